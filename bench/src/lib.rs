@@ -1,0 +1,1 @@
+//! Benchmarks of perpend: questions that an application would ask, with the worst error seen beside every time.

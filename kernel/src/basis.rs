@@ -1,0 +1,123 @@
+//! B-spline basis functions and their derivatives, on the stack.
+
+use crate::knots::{KnotVector, MAX_DEGREE};
+
+/// Room for the basis functions of the highest degree.
+pub(crate) const ROOM: usize = MAX_DEGREE + 1;
+
+/// The `degree + 1` basis functions that do not vanish on span `span`, at `u`.
+///
+/// The NURBS Book, algorithm A2.2 (equation 2.5 without the terms that are known to vanish).
+pub(crate) fn functions(knots: &KnotVector, span: usize, u: f64) -> [f64; ROOM] {
+    let (p, t) = (knots.degree(), knots.as_slice());
+    let mut values = [0.0; ROOM];
+    let (mut left, mut right) = ([0.0; ROOM], [0.0; ROOM]);
+    values[0] = 1.0;
+    for j in 1..=p {
+        left[j] = u - t[span + 1 - j];
+        right[j] = t[span + j] - u;
+        let mut saved = 0.0;
+        for r in 0..j {
+            let share = values[r] / (right[r + 1] + left[j - r]);
+            values[r] = saved + right[r + 1] * share;
+            saved = left[j - r] * share;
+        }
+        values[j] = saved;
+    }
+    values
+}
+
+/// Rows `k = 0..=order` of `table` become the `k`-th derivatives of the basis functions on `span` at `u`;
+/// `order` is at most the degree.
+///
+/// The NURBS Book, algorithm A2.3 (equations 2.9 and 2.10).
+pub(crate) fn derivatives(knots: &KnotVector, span: usize, u: f64, order: usize, table: &mut [[f64; ROOM]; ROOM]) {
+    let (p, t) = (knots.degree(), knots.as_slice());
+    debug_assert!(order <= p, "derivatives beyond the degree vanish");
+    // lower triangle: knot differences; upper triangle: the functions of every lower degree
+    let mut ndu = [[0.0; ROOM]; ROOM];
+    let (mut left, mut right) = ([0.0; ROOM], [0.0; ROOM]);
+    ndu[0][0] = 1.0;
+    for j in 1..=p {
+        left[j] = u - t[span + 1 - j];
+        right[j] = t[span + j] - u;
+        let mut saved = 0.0;
+        for r in 0..j {
+            ndu[j][r] = right[r + 1] + left[j - r];
+            let share = ndu[r][j - 1] / ndu[j][r];
+            ndu[r][j] = saved + right[r + 1] * share;
+            saved = left[j - r] * share;
+        }
+        ndu[j][j] = saved;
+    }
+    for j in 0..=p {
+        table[0][j] = ndu[j][p];
+    }
+    for r in 0..=p {
+        let mut rows = [[0.0; ROOM]; 2];
+        rows[0][0] = 1.0;
+        let (mut now, mut next) = (0, 1);
+        for k in 1..=order {
+            let mut sum = 0.0;
+            let low = p - k;
+            if r >= k {
+                rows[next][0] = rows[now][0] / ndu[low + 1][r - k];
+                sum = rows[next][0] * ndu[r - k][low];
+            }
+            let from = if r + 1 >= k { 1 } else { k - r };
+            let to = if r <= low + 1 { k - 1 } else { p - r };
+            for j in from..=to {
+                rows[next][j] = (rows[now][j] - rows[now][j - 1]) / ndu[low + 1][r + j - k];
+                sum += rows[next][j] * ndu[r + j - k][low];
+            }
+            if r <= low {
+                rows[next][k] = -rows[now][k - 1] / ndu[low + 1][r];
+                sum += rows[next][k] * ndu[r][low];
+            }
+            table[k][r] = sum;
+            (now, next) = (next, now);
+        }
+    }
+    let mut factor = p as f64;
+    for (k, row) in table.iter_mut().enumerate().take(order + 1).skip(1) {
+        row[..=p].iter_mut().for_each(|x| *x *= factor);
+        factor *= (p - k) as f64;
+    }
+}
+
+/// Binomial coefficient as a floating-point number: exact up to degree 50.
+#[must_use]
+pub fn binomial(n: usize, k: usize) -> f64 {
+    (0..k.min(n - k)).fold(1.0, |c, i| (c * (n - i) as f64 / (i + 1) as f64).round())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::invalid::Along;
+
+    #[test]
+    fn derivative_rows_are_the_derivatives_of_the_functions() {
+        let t = vec![0.0, 0.0, 0.0, 0.0, 0.3, 0.55, 0.55, 1.0, 1.0, 1.0, 1.0];
+        let knots = KnotVector::new(3, t, 7, Along::Curve).expect("valid");
+        let (h, u) = (1e-5, 0.41);
+        let span = knots.find_span(u);
+        let mut table = [[0.0; ROOM]; ROOM];
+        derivatives(&knots, span, u, 3, &mut table);
+        let (before, after) = (functions(&knots, span, u - h), functions(&knots, span, u + h));
+        for j in 0..=3 {
+            assert!((table[0][j] - functions(&knots, span, u)[j]).abs() < 1e-15);
+            assert!((table[1][j] - (after[j] - before[j]) / (2.0 * h)).abs() < 1e-8);
+        }
+        for row in &table[1..=3] {
+            assert!(row[..=3].iter().sum::<f64>().abs() < 1e-11, "derivatives of a partition of unity add up to 0");
+        }
+    }
+
+    #[test]
+    fn binomials_are_exact() {
+        assert_eq!(binomial(50, 25), 126_410_606_437_752.0);
+        assert_eq!(binomial(5, 0), 1.0);
+        assert!((1..50).all(|n| (1..n).all(|k| binomial(n, k) == binomial(n - 1, k - 1) + binomial(n - 1, k))));
+    }
+}

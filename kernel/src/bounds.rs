@@ -1,0 +1,57 @@
+//! Boxes.
+
+use glam::DVec3;
+use serde::{Deserialize, Serialize};
+
+/// An axis-aligned box, closed: all points with `min <= x <= max` in every coordinate.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+pub struct Aabb {
+    /// The least coordinates.
+    pub min: DVec3,
+    /// The greatest coordinates.
+    pub max: DVec3,
+}
+
+impl Aabb {
+    /// The box that holds nothing; joining it changes nothing.
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// The smallest box around `points`.
+    #[must_use]
+    pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
+        points.into_iter().fold(Self::EMPTY, |bounds, p| Self { min: bounds.min.min(p), max: bounds.max.max(p) })
+    }
+
+    /// The smallest box around both.
+    #[must_use]
+    pub fn join(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// The middle.
+    #[must_use]
+    pub fn centre(&self) -> DVec3 {
+        // halves first: the sum of two huge coordinates may overflow
+        0.5 * self.min + 0.5 * self.max
+    }
+
+    /// Length of the diagonal.
+    #[must_use]
+    pub fn diagonal(&self) -> f64 {
+        let extent = self.max - self.min;
+        let largest = extent.max_element();
+        if largest > 0.0 { largest * (extent / largest).length() } else { 0.0 }
+    }
+
+    /// Square of the distance from `p` to the box; 0 inside.
+    #[must_use]
+    pub fn distance_squared(&self, p: DVec3) -> f64 {
+        (self.min - p).max(p - self.max).max(DVec3::ZERO).length_squared()
+    }
+
+    /// Whether `p` lies in the box.
+    #[must_use]
+    pub fn contains(&self, p: DVec3) -> bool {
+        p.cmpge(self.min).all() && p.cmple(self.max).all()
+    }
+}

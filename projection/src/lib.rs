@@ -1,0 +1,1 @@
+//! Certified nearest points.

@@ -1,0 +1,102 @@
+//! What is asked.
+
+use glam::DVec3;
+
+/// What a query asks for. The default is what an inspection wants; none of these is part of what was prepared.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct QueryOptions {
+    /// The largest difference between `distance` and `lower_bound` that satisfies, in the model's unit; none: 1e-9 times the
+    /// entity's size.
+    pub gap: Option<f64>,
+    /// Only feet at most this far are wanted, in the model's unit; none: however far.
+    pub max_distance: Option<f64>,
+    /// Feet farther than this from one another are different feet, in the model's unit; none: 1e-6 times the size.
+    pub coincidence: Option<f64>,
+    /// How often a query may split a form before it answers with the gap that it reached.
+    pub work: u32,
+}
+
+impl Default for QueryOptions {
+    fn default() -> Self {
+        Self { gap: None, max_distance: None, coincidence: None, work: 20_000 }
+    }
+}
+
+impl QueryOptions {
+    /// Checks the options.
+    ///
+    /// # Errors
+    ///
+    /// [`QueryError::InvalidOption`] where a length is negative or not a number.
+    pub fn validate(&self) -> Result<(), QueryError> {
+        let lengths = [("gap", self.gap), ("max_distance", self.max_distance), ("coincidence", self.coincidence)];
+        for (option, value) in lengths {
+            if let Some(value) = value
+                && !(value >= 0.0)
+            {
+                return Err(QueryError::InvalidOption { option, value });
+            }
+        }
+        Ok(())
+    }
+}
+
+/// A query: the object whose nearest point is sought, and what is wanted of the answer.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Query {
+    /// The query point.
+    pub point: DVec3,
+    /// What is wanted.
+    pub options: QueryOptions,
+}
+
+/// Largest |coordinate| of a query point: its square stays finite.
+const COORDINATE_LIMIT: f64 = 1e150;
+
+impl Query {
+    /// A query for the point nearest to `point`.
+    ///
+    /// # Errors
+    ///
+    /// A coordinate that is no finite number or beyond 1e150; an option without meaning.
+    pub fn new(point: DVec3, options: QueryOptions) -> Result<Self, QueryError> {
+        options.validate()?;
+        if point.abs().cmple(DVec3::splat(COORDINATE_LIMIT)).all() {
+            Ok(Self { point, options })
+        } else {
+            Err(QueryError::InvalidPoint { index: 0, x: point.x, y: point.y, z: point.z })
+        }
+    }
+}
+
+/// Why a query was not answered.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum QueryError {
+    /// No entity of the model has this id.
+    #[error("the model has no entity {id}; its entities are listed by `perpend show`")]
+    UnknownEntity {
+        /// The id that was asked for.
+        id: perpend_kernel::EntityId,
+    },
+    /// A coordinate of the query point is infinite, not a number, or beyond 1e150.
+    #[error("query point {index} is ({x}, {y}, {z}); coordinates are finite and within ±1e150")]
+    InvalidPoint {
+        /// Index of the point in its batch; 0 for a single query.
+        index: usize,
+        /// Its first coordinate.
+        x: f64,
+        /// Its second coordinate.
+        y: f64,
+        /// Its third coordinate.
+        z: f64,
+    },
+    /// An option has no meaning.
+    #[error("the option {option} is {value}; it is a length of at least 0 in the model's unit")]
+    InvalidOption {
+        /// The option's name.
+        option: &'static str,
+        /// Its value.
+        value: f64,
+    },
+}

@@ -1,0 +1,1 @@
+//! A knowledge-guided geometry kernel.
