@@ -1,6 +1,8 @@
 //! Certified nearest points on curves and surfaces.
 
 mod answer;
+mod hierarchy;
+mod landmarks;
 mod prepared;
 mod query;
 mod scratch;

@@ -2,9 +2,12 @@
 
 use std::sync::Arc;
 
-use perpend_kernel::Definition;
+use glam::DVec3;
+use perpend_kernel::{Definition, Direction, NurbsSurface};
 
-use crate::answer::{FootPoint, Ties};
+use crate::answer::{FootPoint, Method, Multiplicity, Parameter, Place};
+use crate::hierarchy::{Hierarchy, Solution, Tie};
+use crate::landmarks::{Landmarks, turns, vanishes};
 use crate::query::Query;
 use crate::scratch::Scratch;
 
@@ -12,13 +15,17 @@ use crate::scratch::Scratch;
 #[derive(Debug)]
 pub struct Prepared {
     definition: Arc<Definition>,
+    landmarks: Landmarks,
+    hierarchy: Hierarchy,
 }
 
 impl Prepared {
     /// Prepares a definition.
     #[must_use]
     pub fn new(definition: Arc<Definition>) -> Self {
-        Self { definition }
+        let landmarks = Landmarks::of(&definition);
+        let hierarchy = Hierarchy::new(&definition, &landmarks.cusps);
+        Self { definition, landmarks, hierarchy }
     }
 
     /// The definition.
@@ -27,17 +34,148 @@ impl Prepared {
         &self.definition
     }
 
-    /// The nearest point; none where nothing is within `max_distance`.
+    /// The nearest point of the entity, with its proof; none where nothing lies within the query's `max_distance`.
     #[must_use]
     pub fn project(&self, query: &Query, scratch: &mut Scratch) -> Option<FootPoint> {
-        let _ = (query, scratch);
-        None
+        self.project_near(query, None, scratch)
+    }
+
+    /// As [`project`](Self::project), and the same answer; `hint` is any point of the entity, best one near the foot. It spares
+    /// the look at pieces that are farther away than it.
+    #[must_use]
+    pub fn project_near(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Option<FootPoint> {
+        let solution = self.hierarchy.project(query, hint, &mut scratch.hierarchy)?;
+        scratch.statistics += solution.statistics;
+        Some(self.answer(query, &solution))
     }
 
     /// All nearest points.
     #[must_use]
-    pub fn project_ties(&self, query: &Query, scratch: &mut Scratch) -> Option<Ties> {
-        let _ = (query, scratch);
-        None
+    pub fn project_ties(&self, query: &Query, scratch: &mut Scratch) -> Option<crate::answer::Ties> {
+        let nearest = self.project(query, scratch)?;
+        Some(crate::answer::Ties { nearest, points: vec![nearest], continua: Vec::new(), complete: false })
+    }
+
+    fn answer(&self, query: &Query, solution: &Solution) -> FootPoint {
+        let frame = &self.hierarchy.frame;
+        let distance = frame.length(solution.distance);
+        let lower_bound = frame.length(solution.lower_bound).min(distance);
+        let multiplicity = match solution.tie {
+            Tie::None => Multiplicity::Unique,
+            Tie::Apart => Multiplicity::Tied,
+            Tie::Connected => Multiplicity::Continuum,
+        };
+        let (parameter, point, place, normal) = match &*self.definition {
+            Definition::NurbsCurve(curve) => {
+                let u = self.landmarks.lower(0, solution.u, curve.domain());
+                (Parameter::Curve(u), curve.point(u), self.place_on_curve(u), None)
+            }
+            Definition::NurbsSurface(surface) => {
+                let u = self.landmarks.lower(0, solution.u, surface.domain(Direction::U));
+                let v = self.landmarks.lower(1, solution.v, surface.domain(Direction::V));
+                let (place, normal) = self.place_on_surface(surface, u, v, solution.normal);
+                (Parameter::Surface(u, v), surface.point(u, v), place, normal)
+            }
+        };
+        let side = normal.map(|normal| -solution.offset.dot(normal));
+        let _ = query;
+        FootPoint {
+            parameter,
+            point,
+            distance,
+            lower_bound,
+            place,
+            multiplicity,
+            normal,
+            signed_distance: side.map(|side| if side < 0.0 { -distance } else { distance }),
+            method: Method::Hierarchy,
+        }
+    }
+
+    fn place_on_curve(&self, u: f64) -> Place {
+        let Definition::NurbsCurve(curve) = &*self.definition else { return Place::Interior };
+        let (first, last) = curve.domain();
+        let (closed, at_end) = (self.landmarks.closed[0], u == first || u == last);
+        let is_break = self.landmarks.breaks[0].contains(&u);
+        if !at_end && !is_break && !self.landmarks.cusps.contains(&u) {
+            return Place::Interior;
+        }
+        let (mut before, mut after) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
+        curve.derivatives_from_left(if at_end && closed { last } else { u }, &mut before);
+        curve.derivatives(if at_end && closed { first } else { u }, &mut after);
+        let cusp = vanishes(before[1], &self.definition) || vanishes(after[1], &self.definition);
+        match (at_end, closed) {
+            (true, false) => Place::End,
+            _ if cusp => Place::Cusp,
+            _ if turns(before[1], after[1]) => Place::Crease,
+            (true, true) => Place::Seam,
+            (false, _) => Place::Interior,
+        }
+    }
+
+    fn place_on_surface(&self, surface: &NurbsSurface, u: f64, v: f64, normal: DVec3) -> (Place, Option<DVec3>) {
+        let landmarks = &self.landmarks;
+        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
+        let at = [u, v];
+        let on = |direction: usize| at[direction] == ends[direction].0 || at[direction] == ends[direction].1;
+        let pole = (0..2)
+            .any(|d| (landmarks.poles[d][0] && at[d] == ends[d].0) || (landmarks.poles[d][1] && at[d] == ends[d].1));
+        if pole {
+            return (Place::Pole, None);
+        }
+        let open_edge = |d: usize| on(d) && !landmarks.closed[d];
+        let around = |d: usize| (on(d) && landmarks.closed[d]) || landmarks.breaks[d].contains(&at[d]);
+        let mut normal = (normal != DVec3::ZERO).then_some(normal);
+        let mut crease = false;
+        if around(0) || around(1) {
+            (normal, crease) = self.normals_around(surface, [u, v], [around(0), around(1)]);
+        }
+        let place = if normal.is_none() && !crease {
+            Place::Cusp
+        } else if open_edge(0) && open_edge(1) {
+            Place::Corner
+        } else if crease {
+            Place::Crease
+        } else if (0..2).any(|d| on(d) && landmarks.closed[d]) {
+            Place::Seam
+        } else if open_edge(0) || open_edge(1) {
+            Place::Edge
+        } else {
+            Place::Interior
+        };
+        (place, normal)
+    }
+
+    /// The mean of the unit normals on all sides of a seam or break, and whether they differ.
+    fn normals_around(&self, surface: &NurbsSurface, at: [f64; 2], around: [bool; 2]) -> (Option<DVec3>, bool) {
+        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
+        let mut normals: smallvec::SmallVec<[DVec3; 4]> = smallvec::SmallVec::new();
+        for below in [[false, false], [true, false], [false, true], [true, true]] {
+            if (0..2).any(|d| below[d] && !around[d]) {
+                continue;
+            }
+            // the far side of a seam lies at the other end of the domain
+            let side = [0, 1].map(|d| {
+                let on_seam = around[d] && (at[d] == ends[d].0 || at[d] == ends[d].1);
+                match (on_seam, below[d]) {
+                    (true, true) => ends[d].1,
+                    (true, false) => ends[d].0,
+                    (false, _) => at[d],
+                }
+            });
+            let mut d = [DVec3::ZERO; 4];
+            surface.derivatives_from(side[0], side[1], below, 1, &mut d);
+            normals.extend(d[2].cross(d[1]).try_normalize());
+        }
+        let crease = normals.windows(2).any(|pair| turns(pair[0], pair[1]));
+        let sum: DVec3 = normals.iter().sum();
+        (sum.try_normalize(), crease)
+    }
+}
+
+impl Landmarks {
+    /// A foot on a seam has two parameters: the lower one is given.
+    fn lower(&self, direction: usize, u: f64, (first, last): (f64, f64)) -> f64 {
+        if self.closed[direction] && u == last { first } else { u }
     }
 }

@@ -1,5 +1,12 @@
 //! Working memory of a query.
 
+use crate::hierarchy::Workspace;
+use crate::statistics::Statistics;
+
 /// Working memory that the caller may hold and reuse, so that queries do not allocate. Its contents never change an answer.
 #[derive(Debug, Default)]
-pub struct Scratch {}
+pub struct Scratch {
+    pub(crate) hierarchy: Workspace,
+    /// What the queries answered with this memory have cost so far.
+    pub statistics: Statistics,
+}

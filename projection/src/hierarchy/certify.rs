@@ -1,0 +1,466 @@
+//! The proof for one leaf: no point of it is nearer than `tau`.
+//!
+//! A box of the leaf's parameters is described by the net `g` of the form on it. Two things are kept beside the net:
+//!
+//! - `rounding`: every coefficient of the true form differs from its `g` by at most this;
+//! - `slack`: what reductions have given away. The box may stand for a larger one that was reduced to one of its edges or
+//!   corners; on all of that one the true form is at least the least of the true form on the box, less `slack`.
+//!
+//! With `threshold` (`tau²` for a polynomial leaf, whose form leaves `tau` out, else 0), these tests close a box or make it simpler:
+//!
+//! 1. **Positive**: `min g > threshold + rounding + slack`.
+//! 2. **Corner**: the least coefficient is that of a corner, up to `c = g_corner - min g`. The form is at least its value at the
+//!    corner less `c + 2 rounding + slack`; that value is evaluated, with an error of its own.
+//! 3. **Edge**: all rows stay above the first (or last) one by `v = min (g_kl - g_0l)`. Then `G(s, t) >= G(0, t) - max(0, 2 rounding - v)`,
+//!    since the true differences are at least `v - 2 rounding` and the other rows' Bernstein polynomials add up to at most 1. The edge replaces the
+//!    box. Asking for this weaker thing than monotony is what lets collapsed edges, zero widths and exact ties through.
+//! 4. **Convex**: with `H >= diag(a, c)` on the box and any point `x0` of it,
+//!    `G >= G(x0) + min (Gs ds + a ds²/2) + min (Gt dt + c dt²/2)` over the steps that stay in the box. At the corners value and gradient are
+//!    coefficients; elsewhere they are evaluated, with errors [`value_error`] and [`gradient_error`].
+//! 5. else the box is split.
+//!
+//! Reductions may give away a tenth of the margin that the form has at a foot; whether they gave too much, the closing test decides.
+
+use glam::{DVec3, DVec4};
+
+use super::ROUNDING;
+use super::convex::{self, Curvature, Patch};
+use super::form::rounding_bound;
+use super::leaf::Leaf;
+use super::net;
+use super::newton::{self, Domain, Found, Search};
+use super::state::{Foot, State};
+
+/// Working memory: the nets of all boxes that wait, the boxes, and the matrices of the convexity test.
+#[derive(Debug, Default)]
+pub(super) struct Memory {
+    nets: Vec<f64>,
+    cells: Vec<Cell>,
+    matrices: Vec<[f64; 3]>,
+}
+
+/// A box of the leaf that waits for its proof.
+#[derive(Debug, Clone, Copy)]
+struct Cell {
+    /// Where its net begins. The nets of the waiting boxes lie in the order of the boxes.
+    offset: usize,
+    /// Degrees of its net.
+    m: usize,
+    n: usize,
+    domain: Domain,
+    rounding: f64,
+    slack: f64,
+}
+
+impl Cell {
+    fn len(&self) -> usize {
+        (self.m + 1) * (self.n + 1)
+    }
+
+    fn extent(&self) -> (f64, f64) {
+        (self.domain.s.1 - self.domain.s.0, self.domain.t.1 - self.domain.t.0)
+    }
+
+    /// Too narrow for further splits of the form to tell anything.
+    fn is_narrow(&self) -> bool {
+        let (s, t) = self.extent();
+        (self.m == 0 || s < 1e-12) && (self.n == 0 || t < 1e-12)
+    }
+}
+
+/// A leaf, or a part of one that came of refinement, and where it lies in its prepared leaf.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Part<'a> {
+    pub leaf: &'a Leaf,
+    /// The prepared leaf.
+    pub index: u32,
+    /// What it covers of the prepared leaf.
+    pub within: Domain,
+}
+
+impl Part<'_> {
+    pub(super) fn is_whole(&self) -> bool {
+        self.within.s == (0.0, 1.0) && self.within.t == (0.0, 1.0)
+    }
+
+    /// A point of the part as a point of the entity.
+    pub(super) fn foot(&self, found: &Found) -> Foot {
+        let along = |(from, to): (f64, f64), x: f64| if x >= 1.0 { to } else { from + x * (to - from) };
+        Foot {
+            leaf: self.index,
+            s: along(self.within.s, found.s),
+            t: along(self.within.t, found.t),
+            point: found.jet.p.truncate() / found.jet.p.w + self.leaf.origin,
+            distance: found.distance,
+        }
+    }
+
+    /// Tells the state of a point of the part.
+    fn offer(&self, found: &Found, state: &mut State) {
+        state.offer(self.foot(found), self.is_whole().then_some(found.jet));
+    }
+}
+
+/// How the proof of a leaf ended.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Outcome {
+    /// No point of it is nearer than the state's `tau`, but for boxes whose bounds went to the state's `open`.
+    Closed,
+    /// Rounding or the leaf's share of the work stopped it.
+    Stopped,
+}
+
+/// Error of `|A - x w|² - tau² w²` evaluated at a point at distance `d`.
+///
+/// The basis functions have a relative error of at most `(2 p + 1) u` each, the sums add one rounding a term: `A - x w` errs by at most
+/// `c u (d + 2 r) W` with `c = 3 (p + q) + 8`, and `|A - x w| <= d W`. Hence `2 c u (d² + 2 d r) W²`, and a few `u d² W²` for the square and for
+/// `tau² w²`; the factor below is more than twice that.
+fn value_error(leaf: &Leaf, d: f64) -> f64 {
+    let (p, q) = leaf.degree;
+    let factor = (4 * (p + q + 8) * (1 + p + q)) as f64;
+    factor * ROUNDING * (d * d + 2.0 * d * leaf.radius) * leaf.heaviest * leaf.heaviest
+}
+
+/// Error of the derivative `2 (A - x w) · (A_s - x w_s) - 2 tau² w w_s`, `degree` being the leaf's in that direction.
+///
+/// A derivative is a sum over differences of basis functions, `Σ |B'| <= 2 p`, so `A_s - x w_s` errs by at most `2 p c u (d + 2 r) W`. This does not
+/// fall with `d`: beside the surface it is what limits the test.
+fn gradient_error(leaf: &Leaf, d: f64, tau: f64, direction: DVec3, weight: f64, degree: usize) -> f64 {
+    let (p, q) = leaf.degree;
+    let (w, twice) = (leaf.heaviest, 2.0 * degree as f64);
+    let reach = d + 2.0 * leaf.radius;
+    let sum = reach * w * direction.length()
+        + twice * d * reach * w * w
+        + tau * tau * w * weight.abs()
+        + twice * tau * tau * w * w;
+    (8 * (p + q + 8)) as f64 * ROUNDING * sum
+}
+
+/// Proves the part no nearer than the state's `tau`, or finds nearer points on the way (then `tau` falls).
+///
+/// At most `share` splits are spent; `last` says that nothing follows: then boxes that resist are left open.
+pub(super) fn certify(part: Part<'_>, state: &mut State, memory: &mut Memory, share: u32, last: bool) -> Outcome {
+    let leaf = part.leaf;
+    let x = state.point - leaf.origin;
+    let mut proof = Proof { part, x, formed: 0.0, tried: false };
+    proof.restart(state, memory);
+    let mut splits = 0;
+    while let Some(cell) = memory.cells.pop() {
+        memory.nets.truncate(cell.offset + cell.len());
+        if state.tau() == 0.0 {
+            return Outcome::Closed;
+        }
+        if proof.is_stale(state) {
+            proof.restart(state, memory);
+            continue;
+        }
+        match proof.examine(cell, state, memory) {
+            Verdict::Closed => {}
+            Verdict::Again(cell) => memory.cells.push(cell),
+            Verdict::Open { least } => {
+                if splits >= share || state.work == 0 || cell.is_narrow() {
+                    if !last && state.work > 0 {
+                        return Outcome::Stopped;
+                    }
+                    proof.leave_open(cell, least, state);
+                    continue;
+                }
+                splits += 1;
+                state.work -= 1;
+                state.statistics.subdivisions += 1;
+                split(cell, memory);
+            }
+        }
+    }
+    Outcome::Closed
+}
+
+/// What became of a box.
+enum Verdict {
+    /// Proven.
+    Closed,
+    /// Reduced, or the upper bound fell: look again.
+    Again(Cell),
+    /// To be split; `least` is its least coefficient.
+    Open { least: f64 },
+}
+
+struct Proof<'a> {
+    part: Part<'a>,
+    /// The query, about the leaf's origin.
+    x: DVec3,
+    /// The `tau` that a rational leaf's form was made with.
+    formed: f64,
+    /// Whether Newton's method was tried from inside the leaf.
+    tried: bool,
+}
+
+impl Proof<'_> {
+    /// Makes the form of the whole leaf.
+    fn restart(&mut self, state: &mut State, memory: &mut Memory) {
+        let leaf = self.part.leaf;
+        self.formed = state.tau();
+        memory.nets.clear();
+        memory.cells.clear();
+        leaf.tables.form(leaf.shape(), self.x, self.formed, &mut memory.nets);
+        state.statistics.forms += 1;
+        let (m, n) = leaf.shape().form_degree();
+        let rounding = rounding_bound(leaf.degree, self.x.length(), leaf.radius, self.formed, leaf.heaviest);
+        memory.cells.push(Cell { offset: 0, m, n, domain: Domain::WHOLE, rounding, slack: 0.0 });
+    }
+
+    /// Whether `tau` fell so far that the form of a rational leaf asks for more than is needed. What is convex or dominated
+    /// at one `tau` need not be at another, since the weights vary.
+    fn is_stale(&self, state: &State) -> bool {
+        self.part.leaf.rational && state.tau() < self.formed - 0.5 * state.gap
+    }
+
+    /// The `tau` that the form speaks of.
+    fn tau(&self, state: &State) -> f64 {
+        if self.part.leaf.rational { self.formed } else { state.tau() }
+    }
+
+    fn examine(&mut self, mut cell: Cell, state: &mut State, memory: &mut Memory) -> Verdict {
+        let leaf = self.part.leaf;
+        let threshold = if leaf.rational { 0.0 } else { state.tau().powi(2) };
+        let budget = 0.1 * state.margin() * leaf.lightest * leaf.lightest;
+        let g = &mut memory.nets[cell.offset..cell.offset + cell.len()];
+        let least = net::least(g);
+        if least > threshold + cell.rounding + cell.slack {
+            return Verdict::Closed;
+        }
+        if let Some(verdict) = self.corner(cell, g, least, budget, state) {
+            return verdict;
+        }
+        if reduce_to_edge(&mut cell, g, least, budget) {
+            return Verdict::Again(cell);
+        }
+        let patch = Patch { g, m: cell.m, n: cell.n, extent: cell.extent(), rounding: cell.rounding };
+        if let Some(curvature) = convex::curvature(patch, &mut memory.matrices) {
+            if corners_close(cell, g, curvature, threshold) || self.newton_closes(cell, curvature, state) {
+                return Verdict::Closed;
+            }
+            if state.tau() == 0.0 || self.is_stale(state) {
+                return Verdict::Again(cell);
+            }
+        } else if !self.tried || least_corner(cell, g) < threshold - cell.rounding {
+            // not tried yet, or a corner is proven nearer than tau
+            self.tried = true;
+            let before = state.tau();
+            self.newton_from_least(cell, g, state);
+            if state.tau() < before {
+                return Verdict::Again(cell);
+            }
+        }
+        Verdict::Open { least }
+    }
+
+    /// Test 2. None where the least coefficient is no corner's; otherwise the corner is evaluated, which may find a nearer point.
+    fn corner(&self, cell: Cell, g: &[f64], least: f64, budget: f64, state: &mut State) -> Option<Verdict> {
+        let leaf = self.part.leaf;
+        let (at, corner) = corners(cell).min_by(|a, b| g[a.0].total_cmp(&g[b.0]))?;
+        let given = g[at] - least + 2.0 * cell.rounding + cell.slack;
+        if given > budget {
+            return None;
+        }
+        state.statistics.evaluations += 1;
+        let jet = leaf.jet(corner.0, corner.1);
+        let d = (jet.p.truncate() / jet.p.w).distance(self.x);
+        self.part.offer(&Found { distance: d, s: corner.0, t: corner.1, jet }, state);
+        if self.is_stale(state) {
+            return Some(Verdict::Again(cell));
+        }
+        let tau = self.tau(state);
+        let value = (d - tau) * (d + tau) * jet.p.w * jet.p.w;
+        (value >= given + value_error(leaf, d)).then_some(Verdict::Closed)
+    }
+
+    /// Test 4 away from the corners: Newton's method inside the box, the bound tested at every iterate.
+    fn newton_closes(&self, cell: Cell, curvature: Curvature, state: &mut State) -> bool {
+        let leaf = self.part.leaf;
+        // the best point, if it lies in the box: its evaluation is there already
+        let best = state.best_jet.filter(|_| {
+            state.best.leaf == self.part.index
+                && self.part.is_whole()
+                && cell.domain.contains(state.best.s, state.best.t)
+        });
+        let guess = best.map_or_else(|| leaf.linear_guess(self.x), |_| (state.best.s, state.best.t));
+        let search = Search {
+            domain: cell.domain,
+            start: cell.domain.clamp(guess.0, guess.1),
+            known: best,
+            iterations: 16,
+            decrease: 1e-3 * state.margin(),
+        };
+        let (upper, gap, limit, formed) = (state.best.distance, state.gap, state.limit, self.formed);
+        let mut closed = false;
+        let found = newton::search(leaf, self.x, search, &mut state.statistics, |found| {
+            let tau = (found.distance.min(upper) - gap).max(0.0).min(limit);
+            if leaf.rational && tau < formed - 0.5 * gap {
+                return false; // the form will be made again
+            }
+            let tau = if leaf.rational { formed } else { tau };
+            closed = self.bound_from(found, cell, curvature, tau) > 0.0;
+            closed
+        });
+        self.part.offer(&found, state);
+        closed
+    }
+
+    /// The least that the form can be on the box, seen from an evaluated point.
+    fn bound_from(&self, found: &Found, cell: Cell, curvature: Curvature, tau: f64) -> f64 {
+        let (leaf, d) = (self.part.leaf, found.distance);
+        let from_query = |h: DVec4| h.truncate() - self.x * h.w;
+        let (w, q) = (found.jet.p.w, from_query(found.jet.p));
+        let mut bound = (d - tau) * (d + tau) * w * w - value_error(leaf, d) - cell.slack;
+        let mut along = |h: DVec4, degree: usize, curvature: f64, at: f64, (from, to): (f64, f64)| {
+            let direction = from_query(h);
+            let slope = 2.0 * q.dot(direction) - 2.0 * tau * tau * w * h.w;
+            let error = gradient_error(leaf, d, tau, direction, h.w, degree);
+            bound += convex::descent(slope, error, curvature, from - at, to - at);
+        };
+        if cell.m > 0 {
+            along(found.jet.ps, leaf.degree.0, curvature.s, found.s, cell.domain.s);
+        }
+        if cell.n > 0 {
+            along(found.jet.pt, leaf.degree.1, curvature.t, found.t, cell.domain.t);
+        }
+        bound
+    }
+
+    /// Newton's method from where the least coefficient has its Greville point: it may find a nearer point.
+    fn newton_from_least(&self, cell: Cell, g: &[f64], state: &mut State) {
+        let at = (0..g.len()).fold(0, |best, i| if g[i] < g[best] { i } else { best });
+        let (width, (extent_s, extent_t)) = (cell.n + 1, cell.extent());
+        let share = |i: usize, degree: usize| if degree > 0 { i as f64 / degree as f64 } else { 0.0 };
+        let start = (
+            cell.domain.s.0 + extent_s * share(at / width, cell.m),
+            cell.domain.t.0 + extent_t * share(at % width, cell.n),
+        );
+        let decrease = 1e-2 * state.margin();
+        let search = Search { domain: cell.domain, start, known: None, iterations: 8, decrease };
+        let found = newton::search(self.part.leaf, self.x, search, &mut state.statistics, |_| false);
+        self.part.offer(&found, state);
+    }
+
+    /// Leaves a box open: its bound counts for the answer. `G >= c` gives `D >= tau² + c / w²`.
+    fn leave_open(&self, cell: Cell, least: f64, state: &mut State) {
+        let leaf = self.part.leaf;
+        state.statistics.unresolved += 1;
+        let tau = if leaf.rational { self.formed } else { 0.0 };
+        let below = least - cell.rounding - cell.slack;
+        let weight = if below < 0.0 { leaf.lightest } else { leaf.heaviest };
+        let squared = (tau * tau + below / (weight * weight)).max(leaf.box_distance_squared(state.point)).max(0.0);
+        state.open = state.open.min(squared.sqrt());
+    }
+}
+
+/// The corners of a box: index of the coefficient, and parameters. One for each that differs.
+fn corners(cell: Cell) -> impl Iterator<Item = (usize, (f64, f64))> {
+    let (m, n, width) = (cell.m, cell.n, cell.n + 1);
+    let Domain { s, t } = cell.domain;
+    [(0, (s.0, t.0)), (n, (s.0, t.1)), (m * width, (s.1, t.0)), (m * width + n, (s.1, t.1))]
+        .into_iter()
+        .enumerate()
+        .filter(move |(k, _)| (n > 0 || k % 2 == 0) && (m > 0 || k / 2 == 0))
+        .map(|(_, corner)| corner)
+}
+
+fn least_corner(cell: Cell, g: &[f64]) -> f64 {
+    corners(cell).fold(f64::INFINITY, |least, (at, _)| least.min(g[at]))
+}
+
+/// Test 3. Only an edge that holds the least coefficient, up to the budget, can be below all others.
+fn reduce_to_edge(cell: &mut Cell, g: &mut [f64], least: f64, budget: f64) -> bool {
+    let Cell { m, n, .. } = *cell;
+    if m == 0 || n == 0 {
+        return false;
+    }
+    let (width, rounding) = (n + 1, cell.rounding);
+    // what the reduction gives away where the others stay above by `v`
+    let given = |v: f64| (2.0 * rounding - v).max(0.0);
+    for row in [0, m] {
+        if net::least(&g[row * width..(row + 1) * width]) > least + budget {
+            continue;
+        }
+        let given = given(net::rows_above(g, width, row));
+        if given <= budget {
+            g.copy_within(row * width..(row + 1) * width, 0);
+            let at = if row == 0 { cell.domain.s.0 } else { cell.domain.s.1 };
+            cell.domain.s = (at, at);
+            cell.m = 0;
+            cell.slack += given;
+            return true;
+        }
+    }
+    for column in [0, n] {
+        if (0..=m).all(|i| g[i * width + column] > least + budget) {
+            continue;
+        }
+        let given = given(net::columns_above(g, width, column, -budget));
+        if given <= budget {
+            for i in 0..=m {
+                g[i] = g[i * width + column];
+            }
+            let at = if column == 0 { cell.domain.t.0 } else { cell.domain.t.1 };
+            cell.domain.t = (at, at);
+            cell.n = 0;
+            cell.slack += given;
+            return true;
+        }
+    }
+    false
+}
+
+/// Test 4 at the corners, where value and gradient are coefficients: `G = g ± rounding`, `Gs = m (g_1 - g_0) ± 2 m rounding` over the box.
+fn corners_close(cell: Cell, g: &[f64], curvature: Curvature, threshold: f64) -> bool {
+    let (m, n, width) = (cell.m, cell.n, cell.n + 1);
+    let (extent_s, extent_t) = cell.extent();
+    let needed = threshold + cell.rounding + cell.slack;
+    corners(cell).any(|(at, (s, t))| {
+        let mut bound = g[at];
+        let mut inward = |neighbour: usize, degree: usize, curvature: f64| {
+            let (slope, error) = ((g[neighbour] - g[at]) * degree as f64, 2.0 * degree as f64 * cell.rounding);
+            bound += convex::descent(slope, error, curvature, 0.0, 1.0);
+        };
+        if m > 0 {
+            inward(if s == cell.domain.s.0 { at + width } else { at - width }, m, curvature.s * extent_s * extent_s);
+        }
+        if n > 0 {
+            inward(if t == cell.domain.t.0 { at + 1 } else { at - 1 }, n, curvature.t * extent_t * extent_t);
+        }
+        bound > needed
+    })
+}
+
+/// Halves a box, whose net lies at the end of the nets; the half with the lesser coefficients is looked at first.
+fn split(cell: Cell, memory: &mut Memory) {
+    let (len, width) = (cell.len(), cell.n + 1);
+    let (_, largest) = net::extremes(&memory.nets[cell.offset..]);
+    memory.nets.resize(cell.offset + 2 * len, 0.0);
+    let (low, high) = memory.nets[cell.offset..].split_at_mut(len);
+    let down = cell.n == 0 || (cell.m > 0 && net::bends_more_down(low, cell.m, cell.n));
+    let (mut first, mut second) = (cell, cell);
+    let degree = if down {
+        net::halve_down(low, high, cell.m, width);
+        let middle = 0.5 * (cell.domain.s.0 + cell.domain.s.1);
+        (first.domain.s.1, second.domain.s.0) = (middle, middle);
+        cell.m
+    } else {
+        net::halve_along(low, high, cell.n);
+        let middle = 0.5 * (cell.domain.t.0 + cell.domain.t.1);
+        (first.domain.t.1, second.domain.t.0) = (middle, middle);
+        cell.n
+    };
+    // halving is exact, one rounding a level; averages do not amplify
+    let grown = cell.rounding + degree as f64 * ROUNDING * largest;
+    (first.rounding, second.rounding) = (grown, grown);
+    if net::least(low) <= net::least(high) {
+        low.swap_with_slice(high);
+        (first, second) = (second, first);
+    }
+    first.offset = cell.offset;
+    second.offset = cell.offset + len;
+    memory.cells.push(first);
+    memory.cells.push(second);
+}

@@ -1,0 +1,123 @@
+//! The form whose signs are the proof, and the bound of its rounding.
+//!
+//! For a leaf with homogeneous net `(A, w)` about its own origin, a query at `x` and a distance `tau`,
+//!
+//! ```text
+//! G(s, t) = |A(s, t) - x w(s, t)|² - tau² w(s, t)²
+//! ```
+//!
+//! is non-negative exactly where the leaf is no nearer than `tau`. It is a Bernstein polynomial of twice the leaf's degree with
+//! coefficients
+//!
+//! ```text
+//! g = c0 - 2 x · c1 + (|x|² - tau²) c2,     c0 ~ |A|²,  c1 ~ A w,  c2 ~ w²
+//! ```
+//!
+//! so three tables, made once, give it for every query without a division. Where all weights are 1, `c2 = 1`: then the form
+//! leaves `tau` out and is compared with `tau²` instead of 0, and stays good when `tau` falls.
+//!
+//! # Rounding
+//!
+//! With `r = max|A / w|`, `W = max w`, `N = (p + 1)(q + 1)` and `u = 2⁻⁵³`, to first order in `u`:
+//! a coefficient of `c0` is a sum of at most `N` products, each of two scaled points (two roundings), a scalar product (three),
+//! the sum (`N - 1`) and the division by the two binomials (two): relative to `Σ |terms| <= r² c2` an error of `(N + 6) u`;
+//! likewise `(N + 5) u r c2` for the vector `c1` and `(N + 4) u c2` for `c2`. Combining them takes four multiplications and four
+//! additions, each with partial sums of at most `((|x| + r)² + tau²) c2`: `5 u` of it, and `5 u |x|² + 2 u tau²` for
+//! `|x|² - tau²`. All together, with `c2 <= W²`,
+//!
+//! ```text
+//! |error of g| <= K u ((|x| + r)² + tau²) W²,     K = 1.25 (N + 16), for N < 7: 1.25 (N + 20)
+//! ```
+//!
+//! where `N + 17` was used up: what is left over pays for the rounding of the differences that the tests form of `g`.
+
+use std::sync::OnceLock;
+
+use glam::{DVec3, DVec4};
+use perpend_kernel::binomial;
+
+use super::ROUNDING;
+
+/// The tables of a leaf, made when the leaf is first opened.
+#[derive(Debug, Default)]
+pub(super) struct Tables(OnceLock<Box<[f64]>>);
+
+/// What the form needs to know of a leaf.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Shape<'a> {
+    pub degree: (usize, usize),
+    pub rational: bool,
+    pub net: &'a [DVec4],
+}
+
+impl Shape<'_> {
+    /// Degrees of the form in s and t.
+    pub(super) fn form_degree(&self) -> (usize, usize) {
+        (2 * self.degree.0, 2 * self.degree.1)
+    }
+
+    /// Coefficients of the form.
+    pub(super) fn form_len(&self) -> usize {
+        let (m, n) = self.form_degree();
+        (m + 1) * (n + 1)
+    }
+}
+
+/// The factor `K` of the rounding bound.
+pub(super) fn rounding_factor((p, q): (usize, usize)) -> f64 {
+    let n = (p + 1) * (q + 1);
+    1.25 * (n as f64 + if n < 7 { 20.0 } else { 16.0 })
+}
+
+/// The bound of a coefficient's rounding error; `heaviest` is `W`.
+pub(super) fn rounding_bound(degree: (usize, usize), x: f64, r: f64, tau: f64, heaviest: f64) -> f64 {
+    rounding_factor(degree) * ROUNDING * ((x + r).powi(2) + tau * tau) * heaviest * heaviest
+}
+
+impl Tables {
+    /// Appends the coefficients of the form at `x` to `out`. `tau` enters that of a rational leaf only.
+    pub(super) fn form(&self, leaf: Shape<'_>, x: DVec3, tau: f64, out: &mut Vec<f64>) {
+        let tables = self.0.get_or_init(|| make(leaf));
+        let len = leaf.form_len();
+        let table = |k: usize| &tables[k * len..(k + 1) * len];
+        let (c0, cx, cy, cz) = (table(0), table(1), table(2), table(3));
+        let (x, xx) = (-2.0 * x, x.length_squared());
+        let linear = c0.iter().zip(cx).zip(cy).zip(cz).map(|(((c0, a), b), c)| c0 + x.x * a + x.y * b + x.z * c);
+        if leaf.rational {
+            let kappa = xx - tau * tau;
+            out.extend(linear.zip(table(4)).map(|(g, c2)| g + kappa * c2));
+        } else {
+            out.extend(linear.map(|g| g + xx));
+        }
+    }
+}
+
+/// The tables: `c0`, the coordinates of `c1`, and `c2` where the leaf is rational.
+///
+/// Points are scaled by their binomials once, products are summed over unordered pairs, and the sums are divided once.
+fn make(leaf: Shape<'_>) -> Box<[f64]> {
+    let ((p, q), (m, n)) = (leaf.degree, leaf.form_degree());
+    let (width, len) = (n + 1, leaf.form_len());
+    let scaled: Vec<DVec4> =
+        leaf.net.iter().enumerate().map(|(e, a)| *a * (binomial(p, e / (q + 1)) * binomial(q, e % (q + 1)))).collect();
+    let mut tables = vec![0.0; len * if leaf.rational { 5 } else { 4 }];
+    for (e, a) in scaled.iter().enumerate() {
+        for (f, b) in scaled.iter().enumerate().skip(e) {
+            let at = (e / (q + 1) + f / (q + 1)) * width + e % (q + 1) + f % (q + 1);
+            let (twice, once) = if e == f { (1.0, 0.5) } else { (2.0, 1.0) };
+            tables[at] += twice * a.truncate().dot(b.truncate());
+            let c1 = once * (a.truncate() * b.w + b.truncate() * a.w);
+            tables[len + at] += c1.x;
+            tables[2 * len + at] += c1.y;
+            tables[3 * len + at] += c1.z;
+            if leaf.rational {
+                tables[4 * len + at] += twice * a.w * b.w;
+            }
+        }
+    }
+    for at in 0..len {
+        let binomials = binomial(m, at / width) * binomial(n, at % width);
+        tables.iter_mut().skip(at).step_by(len).for_each(|c| *c /= binomials);
+    }
+    tables.into()
+}

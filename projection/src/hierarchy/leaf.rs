@@ -1,0 +1,146 @@
+//! A leaf of the hierarchy: a Bézier piece about its own origin, with its boxes and tables.
+
+use glam::{DVec3, DVec4};
+use perpend_kernel::{Aabb, Direction, cartesian};
+
+use super::form::{Shape, Tables};
+use super::frame::power_of_two_below;
+use super::jet::Jet;
+use super::oriented_box::OrientedBox;
+use super::piece::Piece;
+
+/// A piece ready for queries. All coordinates are the entity's own, and `net` is relative to `origin`.
+#[derive(Debug)]
+pub(super) struct Leaf {
+    pub degree: (usize, usize),
+    pub rational: bool,
+    /// Homogeneous control points about `origin`, weights scaled so that the largest lies in `[1, 2)`.
+    pub net: Vec<DVec4>,
+    /// Middle of the box.
+    pub origin: DVec3,
+    /// Largest distance of a control point from `origin`.
+    pub radius: f64,
+    /// Largest and smallest weight.
+    pub heaviest: f64,
+    pub lightest: f64,
+    /// The definition's parameters that the leaf covers.
+    pub u: (f64, f64),
+    pub v: (f64, f64),
+    pub bounds: Aabb,
+    oriented: OrientedBox,
+    pub tables: Tables,
+    /// The middle point and the pseudo-inverse of the derivatives there: a linear guess of the foot.
+    middle: DVec3,
+    inverse: [DVec3; 2],
+}
+
+impl Leaf {
+    pub(super) fn new(piece: Piece, rational: bool) -> Self {
+        let Piece { degree, mut net, u, v } = piece;
+        let (p, q) = degree;
+        let bounds = Aabb::around(net.iter().map(|h| cartesian(*h)));
+        let origin = bounds.centre();
+        let scale =
+            if rational { power_of_two_below(net.iter().fold(0.0_f64, |a, h| a.max(h.w))).recip() } else { 1.0 };
+        for h in &mut net {
+            let weight = h.w * scale;
+            *h = ((cartesian(*h) - origin) * weight).extend(weight);
+        }
+        let local: Vec<DVec3> = net.iter().map(|h| cartesian(*h)).collect();
+        let radius = local.iter().fold(0.0_f64, |r, x| r.max(x.length()));
+        let (lightest, heaviest) = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+        let (along, across) = directions(&local, degree);
+        let middle = Jet::at(&net, (p, q), 0.5, 0.5).cartesian();
+        Self {
+            degree,
+            rational,
+            net,
+            origin,
+            radius,
+            heaviest,
+            lightest,
+            u,
+            v,
+            bounds,
+            oriented: OrientedBox::around(&local, along, across),
+            tables: Tables::default(),
+            middle: middle.p,
+            inverse: pseudo_inverse(middle.ps, middle.pt),
+        }
+    }
+
+    pub(super) fn jet(&self, s: f64, t: f64) -> Jet {
+        Jet::at(&self.net, self.degree, s, t)
+    }
+
+    pub(super) fn shape(&self) -> Shape<'_> {
+        Shape { degree: self.degree, rational: self.rational, net: &self.net }
+    }
+
+    /// The foot if the leaf were the affine map that it is in its middle, not yet inside the leaf.
+    pub(super) fn linear_guess(&self, x: DVec3) -> (f64, f64) {
+        let y = x - self.middle;
+        (0.5 + self.inverse[0].dot(y), 0.5 + self.inverse[1].dot(y))
+    }
+
+    /// A lower bound of the squared distance from `p` to the leaf, from its boxes.
+    pub(super) fn box_distance_squared(&self, p: DVec3) -> f64 {
+        self.bounds.distance_squared(p).max(self.oriented.distance_squared(p - self.origin))
+    }
+
+    /// The leaf as a piece again, about the entity's origin.
+    fn piece(&self) -> Piece {
+        let net = self.net.iter().map(|h| (h.truncate() + self.origin * h.w).extend(h.w)).collect();
+        Piece { degree: self.degree, net, u: self.u, v: self.v }
+    }
+
+    /// Both halves in the longer direction, each about its own origin.
+    pub(super) fn refine(&self) -> (Direction, [Self; 2]) {
+        let piece = self.piece();
+        let direction = piece.longer();
+        (direction, piece.halves(direction).map(|half| Self::new(half, self.rational)))
+    }
+
+    /// The definition's parameters at `(s, t)`; the ends of the leaf exactly.
+    pub(super) fn parameters(&self, s: f64, t: f64) -> (f64, f64) {
+        (between(self.u, s), between(self.v, t))
+    }
+
+    /// The leaf's own parameters of the definition's `(u, v)`.
+    pub(super) fn own_parameters(&self, u: f64, v: f64) -> (f64, f64) {
+        (share(self.u, u), share(self.v, v))
+    }
+}
+
+fn between((from, to): (f64, f64), s: f64) -> f64 {
+    if s >= 1.0 { to } else { (from + s * (to - from)).min(to) }
+}
+
+fn share((from, to): (f64, f64), u: f64) -> f64 {
+    if to > from { ((u - from) / (to - from)).clamp(0.0, 1.0) } else { 0.0 }
+}
+
+/// The mean directions of the net in s and in t; for a curve, the chord and the way to the point farthest from it.
+fn directions(points: &[DVec3], (p, q): (usize, usize)) -> (DVec3, DVec3) {
+    let at = |i: usize, j: usize| points[i * (q + 1) + j];
+    let (a, b, c, d) = (at(0, 0), at(p, 0), at(0, q), at(p, q));
+    let along = b - a + d - c;
+    if q > 0 {
+        return (along, c - a + d - b);
+    }
+    let chord = along.normalize_or_zero();
+    let rejected = points.iter().map(|x| (*x - a) - (*x - a).dot(chord) * chord);
+    let across = rejected.fold(DVec3::ZERO, |far, x| if x.length_squared() > far.length_squared() { x } else { far });
+    (along, across)
+}
+
+/// The rows of `J⁺` for `J = (a b)`; of each column by itself where they are parallel.
+fn pseudo_inverse(a: DVec3, b: DVec3) -> [DVec3; 2] {
+    let (aa, ab, bb) = (a.length_squared(), a.dot(b), b.length_squared());
+    let determinant = aa * bb - ab * ab;
+    if determinant > 1e-12 * aa * bb {
+        [(bb * a - ab * b) / determinant, (aa * b - ab * a) / determinant]
+    } else {
+        [a, b].map(|x| if x.length_squared() > 0.0 { x / x.length_squared() } else { DVec3::ZERO })
+    }
+}

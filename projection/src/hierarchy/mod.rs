@@ -1,0 +1,381 @@
+//! The certified solver: a prepared tree of Bézier pieces, and a proof for each that may hold the foot.
+//!
+//! # Order of work
+//!
+//! Preparing brings the definition into its own [`frame`], cuts it into Bézier [`piece`]s at every knot, splits those that bend too
+//! much, and makes a [`leaf`] of each, with its boxes. A query descends to one leaf and takes a first point there by [`newton`]; then it
+//! collects the leaves whose boxes are nearer, and proves them one by one, the nearest first ([`certify`]): each either holds no point
+//! nearer than `tau`, the upper bound less the gap, or yields a nearer point, and `tau` falls. Where rounding stops the proof, the leaf's vector piece
+//! is split and the proof is tried on both halves: rounding falls with the square of their radius.
+//!
+//! # What makes the same query give the same bits
+//!
+//! The walk reads nothing but the query: leaves come in the order of their box distance and index, and the first leaf is found from the
+//! point alone. A hint (a point of the entity whose distance is known) only bounds which leaves are collected at first; when `tau` does not fall
+//! below that bound, the rest is collected too. So the same leaves are proven in the same order, with a hint or without.
+
+mod certify;
+mod convex;
+mod form;
+mod frame;
+mod jet;
+mod leaf;
+mod net;
+mod newton;
+mod oriented_box;
+mod piece;
+mod state;
+
+use glam::DVec3;
+use perpend_kernel::{Aabb, Definition, Direction, cartesian};
+
+use self::certify::{Memory, Outcome, Part, certify};
+use self::form::{rounding_bound, rounding_factor};
+pub(crate) use self::frame::Frame;
+use self::jet::Jet;
+use self::leaf::Leaf;
+use self::newton::{Domain, Found, Search};
+use self::piece::Piece;
+use self::state::{Foot, State};
+use crate::query::Query;
+use crate::statistics::Statistics;
+use crate::tree::{BoxTree, Candidate};
+
+/// The unit roundoff `u`.
+const ROUNDING: f64 = f64::EPSILON / 2.0;
+
+/// How often a piece is halved at most before queries.
+const PREPARED_DEPTH: u32 = 12;
+
+/// How often a leaf is refined at most during a query.
+const REFINED_DEPTH: u32 = 30;
+
+/// How often a piece is halved at most in all.
+const DEEPEST: u32 = PREPARED_DEPTH + REFINED_DEPTH;
+
+/// How many leaves may come of splitting bent pieces; beyond, pieces stay whole.
+const MOST_LEAVES: usize = 200_000;
+
+/// An entity's leaves and their tree.
+#[derive(Debug)]
+pub(crate) struct Hierarchy {
+    pub(crate) frame: Frame,
+    leaves: Vec<Leaf>,
+    tree: BoxTree,
+    /// How far rounding may have moved the entity on its way into the leaves: `dg`.
+    reserve: f64,
+}
+
+/// Working memory of the solver.
+#[derive(Debug, Default)]
+pub(crate) struct Workspace {
+    memory: Memory,
+    candidates: Vec<Candidate>,
+}
+
+/// What the solver found, in the entity's own coordinates.
+#[derive(Debug)]
+pub(crate) struct Solution {
+    /// Parameters of the definition.
+    pub u: f64,
+    pub v: f64,
+    pub distance: f64,
+    pub lower_bound: f64,
+    /// Direction of `S_u × S_v` at the foot, seen from the leaf that holds it; zero where it vanishes, and on curves.
+    pub normal: DVec3,
+    /// From the query to the foot.
+    pub offset: DVec3,
+    pub tie: Tie,
+    pub statistics: Statistics,
+}
+
+/// What was seen of other feet.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Tie {
+    None,
+    Apart,
+    Connected,
+}
+
+impl Hierarchy {
+    /// Prepares a definition; `cusps` are parameters of a curve at which its pieces are split too.
+    pub(crate) fn new(definition: &Definition, cusps: &[f64]) -> Self {
+        let frame = Frame::of(definition);
+        let (net, rational) = frame.net(definition);
+        let reach = net.iter().fold(0.0_f64, |r, h| r.max(cartesian(*h).length()));
+        let degree = match definition {
+            Definition::NurbsCurve(curve) => (curve.degree(), 0),
+            Definition::NurbsSurface(surface) => surface.degree(),
+        };
+        let mut pieces = Piece::all(definition, &net);
+        for cusp in cusps {
+            pieces = pieces.into_iter().flat_map(|piece| piece.cut(*cusp)).collect();
+        }
+        let leaves: Vec<Leaf> = split_bent(pieces).into_iter().map(|piece| Leaf::new(piece, rational)).collect();
+        let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
+        Self { frame, tree: BoxTree::new(&boxes), leaves, reserve: Frame::reserve(degree, reach) }
+    }
+
+    /// The nearest point of the entity; none where nothing is within the query's `max_distance`. `hint` is any point of the entity.
+    pub(crate) fn project(&self, query: &Query, hint: Option<DVec3>, workspace: &mut Workspace) -> Option<Solution> {
+        let mut state = self.start(query);
+        let hint = hint.map_or(f64::INFINITY, |point| self.frame.enter(point).distance(state.point));
+        self.walk(&mut state, hint, workspace);
+        let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
+        let coincidence = self.coincidence(query);
+        let solution = self.solution(&mut state, coincidence);
+        (self.frame.length(solution.distance) <= limit).then_some(solution)
+    }
+
+    fn coincidence(&self, query: &Query) -> f64 {
+        let size = self.frame.size;
+        query.options.coincidence.unwrap_or(1e-6 * size) * self.frame.scale
+    }
+
+    /// The state after a first point was found: in the leaf that a descent of the tree arrives at, from its linear guess.
+    fn start(&self, query: &Query) -> State {
+        let point = self.frame.enter(query.point);
+        let mut statistics = Statistics { queries: 1, ..Statistics::default() };
+        let (index, looked) = self.tree.descend(point).expect("an entity has leaves");
+        statistics.boxes += looked;
+        let leaf = &self.leaves[index as usize];
+        let asked = query.options.gap.unwrap_or(1e-9 * self.frame.size) * self.frame.scale;
+        let near = leaf.box_distance_squared(point).sqrt();
+        let x = point - leaf.origin;
+        let (s, t) = leaf.linear_guess(x);
+        let search = Search {
+            domain: Domain::WHOLE,
+            start: Domain::WHOLE.clamp(s, t),
+            known: None,
+            iterations: 8,
+            decrease: 2e-4 * asked * asked.max(near),
+        };
+        let found = newton::search(leaf, x, search, &mut statistics, |_| false);
+        let whole = Part { leaf, index, within: Domain::WHOLE };
+        let best = whole.foot(&found);
+        // The proof is sought closer than asked by what rounding may take away again. Where that leaves less than half, or
+        // the asked gap is finer than the forms can tell at this distance, the finest gap that they can tell is sought.
+        let left = asked - 2.0 * self.reserve - 20.0 * ROUNDING * point.length();
+        let reachable = 40.0 * rounding_factor(leaf.degree) * ROUNDING * best.distance + 2.0 * self.reserve;
+        State {
+            point,
+            gap: if left < 0.5 * asked { left.max(reachable) } else { left },
+            limit: query.options.max_distance.map_or(f64::INFINITY, |d| d * self.frame.scale),
+            best,
+            best_jet: Some(found.jet),
+            met: smallvec::smallvec![best],
+            open: f64::INFINITY,
+            work: query.options.work,
+            statistics,
+        }
+    }
+
+    /// Proves every leaf that could hold a point nearer than `tau`, the nearest box first.
+    fn walk(&self, state: &mut State, hint: f64, workspace: &mut Workspace) {
+        let Workspace { memory, candidates } = workspace;
+        let (mut from, mut to) = (0.0, squared(state.tau().min(hint)));
+        while state.tau() > 0.0 {
+            candidates.clear();
+            state.statistics.boxes += self.tree.nearer_than(state.point, to, candidates);
+            for candidate in candidates.iter_mut() {
+                let leaf = &self.leaves[candidate.item as usize];
+                candidate.distance_squared = leaf.box_distance_squared(state.point);
+            }
+            candidates.retain(|c| c.distance_squared >= from && c.distance_squared < to);
+            candidates
+                .sort_unstable_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared).then(a.item.cmp(&b.item)));
+            for candidate in candidates.iter() {
+                if candidate.distance_squared >= squared(state.tau()) {
+                    return;
+                }
+                let leaf = &self.leaves[candidate.item as usize];
+                close(Part { leaf, index: candidate.item, within: Domain::WHOLE }, state, memory, 0);
+            }
+            // the leaves beyond the bound that the hint gave, if they are needed after all
+            (from, to) = (to, squared(state.tau()));
+            if to <= from {
+                return;
+            }
+        }
+    }
+
+    /// Polishes the best foot in its prepared leaf and reads the answer off it.
+    fn solution(&self, state: &mut State, coincidence: f64) -> Solution {
+        let lower = state.tau().min(state.open) - self.reserve - 10.0 * ROUNDING * state.point.length();
+        let (best, jet) = (state.best, state.best_jet);
+        let (polished, jet) = self.polish(&best, jet, state);
+        let tie = self.tie(state, &polished, &jet, coincidence);
+        let leaf = &self.leaves[polished.leaf as usize];
+        let (u, v) = leaf.parameters(polished.s, polished.t);
+        // at the parameters as they are reported
+        let (s, t) = leaf.own_parameters(u, v);
+        let jet = leaf.jet(s, t);
+        let c = jet.cartesian();
+        let offset = c.p - (state.point - leaf.origin);
+        let distance = offset.length();
+        state.statistics.evaluations += 1;
+        Solution {
+            u,
+            v,
+            distance,
+            lower_bound: lower.clamp(0.0, distance),
+            normal: normal_direction(c.ps, c.pt),
+            offset,
+            tie,
+            statistics: state.statistics,
+        }
+    }
+
+    /// Newton's method from a foot, to convergence, in its prepared leaf.
+    fn polish(&self, foot: &Foot, known: Option<Jet>, state: &mut State) -> (Foot, Jet) {
+        let leaf = &self.leaves[foot.leaf as usize];
+        let search = Search {
+            domain: Domain::WHOLE,
+            start: (foot.s, foot.t),
+            known,
+            iterations: 6,
+            decrease: 1e-3 * state.gap * state.gap,
+        };
+        let found = newton::search(leaf, state.point - leaf.origin, search, &mut state.statistics, |_| false);
+        (Part { leaf, index: foot.leaf, within: Domain::WHOLE }.foot(&found), found.jet)
+    }
+
+    /// The distance from the query to the entity at parameters of the definition.
+    fn distance_at(&self, p: DVec3, u: f64, v: f64) -> f64 {
+        let holds = |leaf: &&Leaf| leaf.u.0 <= u && u <= leaf.u.1 && leaf.v.0 <= v && v <= leaf.v.1;
+        let leaf = self.leaves.iter().find(holds).expect("the leaves cover the domain");
+        let (s, t) = leaf.own_parameters(u, v);
+        leaf.jet(s, t).cartesian().p.distance(p - leaf.origin)
+    }
+
+    /// Whether a foot that was met, once polished, is as near as the best one and elsewhere.
+    ///
+    /// Two such feet are connected where the straight way between their parameters stays as near to rounding; where it dips below
+    /// both, they are one foot on its way to convergence; else they are apart.
+    fn tie(&self, state: &mut State, best: &Foot, jet: &Jet, coincidence: f64) -> Tie {
+        let mut met = std::mem::take(&mut state.met);
+        let near = best.distance + state.gap;
+        met.retain(|foot| foot.distance <= near && foot.point.distance(best.point) > coincidence);
+        if self.is_flat(best, jet, state) {
+            met.extend(self.sides(best, state));
+        }
+        let mut tie = Tie::None;
+        let noise = 64.0 * ROUNDING * (best.distance + 1.0);
+        for foot in &met {
+            let (foot, _) = self.polish(foot, None, state);
+            if foot.distance > near || foot.point.distance(best.point) <= coincidence {
+                continue;
+            }
+            let [a, b] = [best, &foot].map(|foot| self.leaves[foot.leaf as usize].parameters(foot.s, foot.t));
+            let between = [0.25, 0.5, 0.75]
+                .map(|share| self.distance_at(state.point, a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1)));
+            let (low, high) = between.iter().fold((f64::MAX, 0.0_f64), |(low, high), d| (low.min(*d), high.max(*d)));
+            if high <= best.distance.max(foot.distance) + noise && low >= best.distance - noise {
+                return Tie::Connected;
+            }
+            if high > foot.distance + noise {
+                tie = Tie::Apart;
+            }
+        }
+        tie
+    }
+
+    /// Whether the distance is flat to second order at a foot: then others may be as near beside it.
+    fn is_flat(&self, foot: &Foot, jet: &Jet, state: &State) -> bool {
+        let leaf = &self.leaves[foot.leaf as usize];
+        let c = jet.cartesian();
+        let r = c.p - (state.point - leaf.origin);
+        let (a, b) = (c.ps.length_squared(), c.pt.length_squared());
+        let (hss, hst, htt) = (a + r.dot(c.pss), c.ps.dot(c.pt) + r.dot(c.pst), b + r.dot(c.ptt));
+        if leaf.degree.1 == 0 { hss <= 1e-9 * a } else { hss * htt - hst * hst <= 1e-9 * a * b }
+    }
+
+    /// Points to compare a flat foot with: on the sides of its leaf, straight across.
+    fn sides(&self, foot: &Foot, state: &State) -> impl Iterator<Item = Foot> {
+        let leaf = &self.leaves[foot.leaf as usize];
+        let whole = Part { leaf, index: foot.leaf, within: Domain::WHOLE };
+        let (x, count) = (state.point - leaf.origin, if leaf.degree.1 == 0 { 2 } else { 4 });
+        let sides = [(0.0, foot.t), (1.0, foot.t), (foot.s, 0.0), (foot.s, 1.0)];
+        sides.into_iter().take(count).map(move |(s, t)| {
+            let jet = leaf.jet(s, t);
+            whole.foot(&Found { distance: jet.cartesian().p.distance(x), s, t, jet })
+        })
+    }
+}
+
+/// Proves a part, refining its vector piece where the form alone does not do it.
+fn close(part: Part<'_>, state: &mut State, memory: &mut Memory, depth: u32) {
+    // where even a leaf without extent would drown in rounding, refining is in vain
+    let floor = rounding_bound(part.leaf.degree, state.best.distance, 0.0, state.tau(), 1.0);
+    let last = depth >= REFINED_DEPTH || floor > state.margin();
+    let share = match (last, depth) {
+        (true, _) => 4_000,
+        (false, 0) => 200,
+        (false, _) => 60,
+    };
+    if certify(part, state, memory, share, last) == Outcome::Closed {
+        return;
+    }
+    state.statistics.refinements += 1;
+    state.work = state.work.saturating_sub(1);
+    let (direction, halves) = part.leaf.refine();
+    let within = part.within.halves(direction);
+    let mut parts = [0, 1].map(|k| {
+        let part = Part { leaf: &halves[k], index: part.index, within: within[k] };
+        (part.leaf.box_distance_squared(state.point), part)
+    });
+    if parts[1].0 < parts[0].0 {
+        parts.swap(0, 1);
+    }
+    for (distance_squared, part) in parts {
+        if distance_squared < squared(state.tau()) {
+            close(part, state, memory, depth + 1);
+        }
+    }
+}
+
+/// Splits the pieces that depart too far from an affine map.
+fn split_bent(pieces: Vec<Piece>) -> Vec<Piece> {
+    let mut whole = Vec::with_capacity(pieces.len());
+    let mut waiting: Vec<(Piece, u32)> = pieces.into_iter().rev().map(|piece| (piece, 0)).collect();
+    while let Some((piece, depth)) = waiting.pop() {
+        let room = depth < PREPARED_DEPTH && whole.len() + waiting.len() < MOST_LEAVES;
+        match piece.wants_split().filter(|_| room) {
+            None => whole.push(piece),
+            Some(direction) => {
+                let [low, high] = piece.halves(direction);
+                waiting.extend([(high, depth + 1), (low, depth + 1)]);
+            }
+        }
+    }
+    whole
+}
+
+/// The unit vector along `a × b`; zero where the two are parallel to rounding or one of them vanishes.
+fn normal_direction(a: DVec3, b: DVec3) -> DVec3 {
+    let n = a.cross(b);
+    let (length, of) = (n.length(), a.length() * b.length());
+    if length > 1e-12 * of && of > 0.0 { n / length } else { DVec3::ZERO }
+}
+
+fn squared(x: f64) -> f64 {
+    x * x
+}
+
+impl Domain {
+    /// Both halves in a direction.
+    fn halves(&self, direction: Direction) -> [Self; 2] {
+        let (mut low, mut high) = (*self, *self);
+        match direction {
+            Direction::U => {
+                low.s.1 = piece::middle(self.s);
+                high.s.0 = low.s.1;
+            }
+            Direction::V => {
+                low.t.1 = piece::middle(self.t);
+                high.t.0 = low.t.1;
+            }
+        }
+        [low, high]
+    }
+}

@@ -1,0 +1,182 @@
+//! Bézier pieces in an entity's own coordinates, and when to split them before any query.
+
+use glam::DVec4;
+use perpend_kernel::bezier::{curve_pieces, surface_pieces};
+use perpend_kernel::{Definition, Direction, cartesian};
+
+/// A homogeneous Bézier piece of degree `(p, q)` over a box of the definition's parameters; a curve has `q = 0`.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    pub degree: (usize, usize),
+    /// `(p + 1)(q + 1)` points in row order.
+    pub net: Vec<DVec4>,
+    pub u: (f64, f64),
+    pub v: (f64, f64),
+}
+
+impl Piece {
+    /// The pieces of a definition whose homogeneous net in some coordinates is `net`, split at every knot.
+    pub(super) fn all(definition: &Definition, net: &[DVec4]) -> Vec<Self> {
+        match definition {
+            Definition::NurbsCurve(curve) => curve_pieces(curve.knots(), net)
+                .into_iter()
+                .map(|piece| Self {
+                    degree: (curve.degree(), 0),
+                    net: piece.points,
+                    u: (piece.span.start, piece.span.end),
+                    v: (0.0, 0.0),
+                })
+                .collect(),
+            Definition::NurbsSurface(surface) => {
+                surface_pieces(surface.knots(Direction::U), surface.knots(Direction::V), net)
+                    .into_iter()
+                    .map(|piece| Self {
+                        degree: piece.degree,
+                        net: piece.points,
+                        u: (piece.spans.0.start, piece.spans.0.end),
+                        v: (piece.spans.1.start, piece.spans.1.end),
+                    })
+                    .collect()
+            }
+        }
+    }
+
+    /// Both halves in a direction, by de Casteljau: halving is exact, one rounding a level.
+    pub(super) fn halves(&self, direction: Direction) -> [Self; 2] {
+        let (p, q) = self.degree;
+        let width = q + 1;
+        let (mut low, mut high) = (self.clone(), self.clone());
+        let (lines, degree, step, across) = match direction {
+            Direction::U => (width, p, width, 1),
+            Direction::V => (p + 1, q, 1, width),
+        };
+        for line in 0..lines {
+            let at = |k: usize| line * across + k * step;
+            let work = &mut low.net;
+            high.net[at(degree)] = work[at(degree)];
+            for k in 1..=degree {
+                for i in (k..=degree).rev() {
+                    work[at(i)] = 0.5 * (work[at(i - 1)] + work[at(i)]);
+                }
+                high.net[at(degree - k)] = work[at(degree)];
+            }
+        }
+        match direction {
+            Direction::U => {
+                low.u.1 = middle(self.u);
+                high.u.0 = low.u.1;
+            }
+            Direction::V => {
+                low.v.1 = middle(self.v);
+                high.v.0 = low.v.1;
+            }
+        }
+        [low, high]
+    }
+
+    /// The two parts of a curve's piece before and after the parameter `u`; the piece itself where it does not hold `u` inside.
+    pub(super) fn cut(self, u: f64) -> Vec<Self> {
+        let (from, to) = self.u;
+        if u <= from || u >= to {
+            return vec![self];
+        }
+        // two quotients: the ratio of weights keeps its relative accuracy
+        let (after, before) = ((u - from) / (to - from), (to - u) / (to - from));
+        let degree = self.degree.0;
+        let (mut low, mut high) = (self.clone(), self);
+        for k in 1..=degree {
+            for i in (k..=degree).rev() {
+                low.net[i] = before * low.net[i - 1] + after * low.net[i];
+            }
+            high.net[degree - k] = low.net[degree];
+        }
+        (low.u.1, high.u.0) = (u, u);
+        vec![low, high]
+    }
+
+    /// The direction in which the control net is longer.
+    pub(super) fn longer(&self) -> Direction {
+        let (p, q) = self.degree;
+        let point = |i: usize, j: usize| cartesian(self.net[i * (q + 1) + j]);
+        let along_u = |j: usize| (1..=p).map(|i| point(i, j).distance(point(i - 1, j))).sum::<f64>();
+        let along_v = |i: usize| (1..=q).map(|j| point(i, j).distance(point(i, j - 1))).sum::<f64>();
+        let longest = |lengths: &mut dyn Iterator<Item = f64>| lengths.fold(0.0, f64::max);
+        let u = longest(&mut (0..=q).map(along_u));
+        let v = longest(&mut (0..=p).map(along_v));
+        if q == 0 || u >= v { Direction::U } else { Direction::V }
+    }
+
+    /// The direction to split in before queries, if any.
+    ///
+    /// A piece is split while it departs too far from an affine map: while `(n - 1) max|second difference| / max|first
+    /// difference|` of the net exceeds 1 on a curve and 0.8 times the sine of the angle between the directions on a surface
+    /// (measured: half and twice those cost 5 to 25 % more; skew is what hurts most), or while its weights are more than 16
+    /// apart.
+    pub(super) fn wants_split(&self) -> Option<Direction> {
+        let (p, q) = self.degree;
+        let width = q + 1;
+        let points: Vec<_> = self.net.iter().map(|h| cartesian(*h)).collect();
+        let weight = |i: usize| self.net[i].w;
+        let (mut u, mut v) = (Bend::default(), Bend::default());
+        for i in 0..=p {
+            for j in 0..=q {
+                let at = i * width + j;
+                let line = |step: usize, left: usize, bend: &mut Bend| {
+                    if left >= 1 {
+                        bend.first = bend.first.max(points[at].distance_squared(points[at + step]));
+                        let ratio = weight(at) / weight(at + step);
+                        bend.weights = bend.weights.max(ratio).max(ratio.recip());
+                    }
+                    if left >= 2 {
+                        let second = points[at + 2 * step] - 2.0 * points[at + step] + points[at];
+                        bend.second = bend.second.max(second.length_squared());
+                    }
+                };
+                line(width, p - i, &mut u);
+                line(1, q - j, &mut v);
+            }
+        }
+        let (length_u, length_v) = (u.first.sqrt() * p as f64, v.first.sqrt() * q as f64);
+        // a direction that is a thousand times shorter than the other cannot bend the piece
+        let shortest = 1e-3 * length_u.max(length_v);
+        let mut bend_u = if length_u < shortest { 0.0 } else { u.measure(p) };
+        let mut bend_v = if length_v < shortest { 0.0 } else { v.measure(q) };
+        let (lightest, heaviest) = self.net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+        if heaviest > 16.0 * lightest {
+            *(if u.weights >= v.weights { &mut bend_u } else { &mut bend_v }) += 1.0;
+        }
+        let threshold = if q == 0 { 1.0 } else { 0.8 * self.sine_of_skew() };
+        let largest = bend_u.max(bend_v);
+        (largest > threshold).then_some(if bend_u >= bend_v { Direction::U } else { Direction::V })
+    }
+
+    /// Sine of the angle between the mean u and the mean v direction, at least 0.14.
+    fn sine_of_skew(&self) -> f64 {
+        let (p, q) = self.degree;
+        let corner = |i: usize, j: usize| cartesian(self.net[i * (q + 1) + j]);
+        let (a, b, c, d) = (corner(0, 0), corner(p, 0), corner(0, q), corner(p, q));
+        let (du, dv) = (b - a + d - c, c - a + d - b);
+        let lengths = du.length_squared() * dv.length_squared();
+        if lengths > 0.0 { (1.0 - du.dot(dv).powi(2) / lengths).max(0.02).sqrt() } else { 1.0 }
+    }
+}
+
+/// How much a net bends in one direction: squares of its largest first and second differences, and the largest ratio of
+/// neighbouring weights.
+#[derive(Default)]
+struct Bend {
+    first: f64,
+    second: f64,
+    weights: f64,
+}
+
+impl Bend {
+    fn measure(&self, degree: usize) -> f64 {
+        if degree < 2 || self.first == 0.0 { 0.0 } else { (degree - 1) as f64 * (self.second / self.first).sqrt() }
+    }
+}
+
+pub(super) fn middle((a, b): (f64, f64)) -> f64 {
+    // halves first would underflow for tiny parameters, the sum cannot overflow: knots stay within 1e100 of one another
+    a + 0.5 * (b - a)
+}

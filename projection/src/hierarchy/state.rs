@@ -1,0 +1,75 @@
+//! What is known so far of one query.
+
+use glam::DVec3;
+use smallvec::SmallVec;
+
+use super::jet::Jet;
+use crate::statistics::Statistics;
+
+/// A point of the entity.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Foot {
+    /// The prepared leaf.
+    pub leaf: u32,
+    /// Parameters in that leaf.
+    pub s: f64,
+    pub t: f64,
+    /// In the entity's coordinates.
+    pub point: DVec3,
+    pub distance: f64,
+}
+
+/// The state of one query, shared by all leaves. All lengths are in the entity's own coordinates.
+#[derive(Debug)]
+pub(super) struct State {
+    pub point: DVec3,
+    /// How far below the upper bound the proof is sought: the asked gap less the reserves for rounding.
+    pub gap: f64,
+    /// Nothing farther is wanted.
+    pub limit: f64,
+    /// The nearest point so far.
+    pub best: Foot,
+    /// Its evaluation, where it was made in the prepared leaf itself and not in a part of it.
+    pub best_jet: Option<Jet>,
+    /// Feet met on the way that are nearest within the gap, for the answer's multiplicity.
+    pub met: SmallVec<[Foot; MET]>,
+    /// The least lower bound of the boxes that were left open.
+    pub open: f64,
+    /// Splits that are left.
+    pub work: u32,
+    pub statistics: Statistics,
+}
+
+impl State {
+    /// The distance that a proof must reach: nothing nearer than this.
+    pub(super) fn tau(&self) -> f64 {
+        (self.best.distance - self.gap).max(0.0).min(self.limit)
+    }
+
+    /// What the squared distance of a foot exceeds `tau²` by, at least, where it is worth proving.
+    pub(super) fn margin(&self) -> f64 {
+        let tau = self.tau();
+        let reach = self.best.distance.min(tau + self.gap);
+        (reach - tau) * (reach + tau)
+    }
+
+    /// Takes note of a point, and of its evaluation if that was made in the prepared leaf.
+    pub(super) fn offer(&mut self, foot: Foot, jet: Option<Jet>) {
+        let apart = |met: &Foot| met.distance > self.best.distance + self.gap;
+        if foot.distance <= self.best.distance + self.gap {
+            if self.met.len() == MET {
+                self.met.retain(|met| !apart(met));
+            }
+            if self.met.len() < MET {
+                self.met.push(foot);
+            }
+        }
+        if foot.distance < self.best.distance {
+            self.best = foot;
+            self.best_jet = jet;
+        }
+    }
+}
+
+/// How many feet are kept for the answer's multiplicity.
+const MET: usize = 16;

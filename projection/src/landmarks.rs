@@ -1,0 +1,128 @@
+//! What is particular about a definition's parameters: ends that meet, edges that are one point, breaks, cusps.
+
+use glam::DVec3;
+use perpend_kernel::{Definition, Direction, KnotVector, NurbsCurve, NurbsSurface};
+
+/// Two points of a definition are one where they differ by at most this share of its largest |coordinate|: what rounding
+/// leaves of a closed net after a few operations.
+const SAME_POINT: f64 = 32.0 * f64::EPSILON;
+
+/// A derivative vanishes where it is below this share of size per parameter range.
+const VANISHING: f64 = 1e-9;
+
+/// The tangent turns at a break where its direction changes by more than this, in radians.
+const TURN: f64 = 1e-7;
+
+/// The particular parameters of a definition.
+#[derive(Debug, Clone, Default)]
+pub(crate) struct Landmarks {
+    /// Whether the definition closes, in u and in v.
+    pub closed: [bool; 2],
+    /// Whether the edge at the start and at the end of u is a single point, and of v.
+    pub poles: [[bool; 2]; 2],
+    /// Interior knots of multiplicity `degree` or more, where a tangent may turn: in u and in v.
+    pub breaks: [Vec<f64>; 2],
+    /// Parameters of a curve inside its spans at which the first derivative vanishes.
+    pub cusps: Vec<f64>,
+}
+
+impl Landmarks {
+    pub(crate) fn of(definition: &Definition) -> Self {
+        let same = SAME_POINT * definition.reach();
+        match definition {
+            Definition::NurbsCurve(curve) => Self {
+                closed: [ends_meet(curve, same), false],
+                breaks: [full_breaks(curve.knots()), Vec::new()],
+                cusps: cusps(curve),
+                ..Self::default()
+            },
+            Definition::NurbsSurface(surface) => Self::of_surface(surface, same),
+        }
+    }
+
+    fn of_surface(surface: &NurbsSurface, same: f64) -> Self {
+        let (rows, columns) = (surface.rows(), surface.columns());
+        let point = |i: usize, j: usize| surface.control_points()[i * columns + j];
+        let weight = |i: usize, j: usize| surface.weights().map_or(1.0, |w| w[i * columns + j]);
+        let close = |a: DVec3, b: DVec3| a.distance(b) <= same;
+        let alike = |a: f64, b: f64| (a - b).abs() <= SAME_POINT * a.max(b);
+        let pole_u = |i: usize| (1..columns).all(|j| close(point(i, 0), point(i, j)));
+        let pole_v = |j: usize| (1..rows).all(|i| close(point(0, j), point(i, j)));
+        let closed_u =
+            (0..columns).all(|j| close(point(0, j), point(rows - 1, j)) && alike(weight(0, j), weight(rows - 1, j)));
+        let closed_v =
+            (0..rows).all(|i| close(point(i, 0), point(i, columns - 1)) && alike(weight(i, 0), weight(i, columns - 1)));
+        Self {
+            closed: [closed_u, closed_v],
+            poles: [[pole_u(0), pole_u(rows - 1)], [pole_v(0), pole_v(columns - 1)]],
+            breaks: [full_breaks(surface.knots(Direction::U)), full_breaks(surface.knots(Direction::V))],
+            cusps: Vec::new(),
+        }
+    }
+}
+
+fn ends_meet(curve: &NurbsCurve, same: f64) -> bool {
+    let points = curve.control_points();
+    points[0].distance(points[points.len() - 1]) <= same
+}
+
+fn full_breaks(knots: &KnotVector) -> Vec<f64> {
+    knots.breaks().filter(|b| b.multiplicity >= knots.degree()).map(|b| b.at).collect()
+}
+
+/// Whether the direction turns between two one-sided tangents.
+pub(crate) fn turns(before: DVec3, after: DVec3) -> bool {
+    let lengths = before.length() * after.length();
+    before.cross(after).length() > TURN * lengths || before.dot(after) < 0.0
+}
+
+/// Whether a curve's first derivative `d` vanishes.
+pub(crate) fn vanishes(d: DVec3, definition: &Definition) -> bool {
+    let range = match definition {
+        Definition::NurbsCurve(curve) => curve.domain(),
+        Definition::NurbsSurface(surface) => surface.domain(Direction::U),
+    };
+    d.length() * (range.1 - range.0) <= VANISHING * definition.size()
+}
+
+/// Parameters strictly inside the spans at which the first derivative vanishes.
+///
+/// Found, not proven: the speed is sampled on every span, and Newton's method for `C' · C'' = 0` polishes each local minimum. A cusp
+/// that is missed costs a proof more work and an answer its `Place::Cusp`, nothing else.
+fn cusps(curve: &NurbsCurve) -> Vec<f64> {
+    let samples = 8 * curve.degree();
+    let definition = Definition::from(curve.clone());
+    let mut found = Vec::new();
+    for span in curve.knots().spans() {
+        let step = (span.end - span.start) / samples as f64;
+        let jet = |u: f64| {
+            let mut d = [DVec3::ZERO; 4];
+            if u >= span.end {
+                curve.derivatives_from_left(u, &mut d);
+            } else {
+                curve.derivatives(u, &mut d);
+            }
+            d
+        };
+        let speeds: Vec<f64> = (0..=samples).map(|k| jet(span.start + step * k as f64)[1].length()).collect();
+        for k in 1..samples {
+            if speeds[k] > speeds[k - 1] || speeds[k] > speeds[k + 1] {
+                continue;
+            }
+            let (low, high) = (span.start + step * (k - 1) as f64, span.start + step * (k + 1) as f64);
+            let mut u = 0.5 * (low + high);
+            for _ in 0..12 {
+                let d = jet(u);
+                let slope = d[2].length_squared() + d[1].dot(d[3]);
+                if slope > 0.0 {
+                    u = (u - d[1].dot(d[2]) / slope).clamp(low, high);
+                }
+            }
+            if u > span.start && u < span.end && vanishes(jet(u)[1], &definition) {
+                found.push(u);
+            }
+        }
+    }
+    found.dedup();
+    found
+}
