@@ -1,1 +1,56 @@
-//! A knowledge-guided geometry kernel.
+//! A knowledge-guided geometry kernel: certified nearest points on NURBS curves and surfaces.
+//!
+//! A [`Model`] holds entities, called by [`EntityId`]; a query gives the nearest point of an entity, over the whole of it,
+//! and with it a proven lower bound: the true distance lies in `[lower_bound, distance]`.
+//!
+//! ```
+//! use perpend::{CurveData, DVec3, Model};
+//!
+//! let mut model = Model::new();
+//! let bow = CurveData {
+//!     degree: 2,
+//!     knots: vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0],
+//!     control_points: vec![DVec3::new(-1.0, 0.0, 0.0), DVec3::new(0.0, 2.0, 0.0), DVec3::new(1.0, 0.0, 0.0)],
+//!     weights: None,
+//! };
+//! let id = model.insert("bow", bow)?;
+//! let foot = model.project(id, DVec3::new(0.0, 3.0, 0.0))?;
+//! assert!((foot.distance - 2.0).abs() < 1e-12 && foot.lower_bound <= foot.distance);
+//! # Ok::<(), Box<dyn std::error::Error>>(())
+//! ```
+//!
+//! Models live in RON files ([`Model::read`], [`Model::write`]). Lengths are in the model's [`Units`]; all numbers are
+//! `f64`.
+
+mod batch;
+mod edit;
+mod enter;
+mod entity;
+mod file;
+mod model;
+mod nearest;
+mod projector;
+mod query;
+mod units;
+
+pub use edit::EditError;
+pub use enter::IntoDefinition;
+pub use entity::{Entity, EntityError};
+pub use file::{AtomicFile, InvalidModel, ModelError, ReadError, WriteError};
+pub use model::Model;
+pub use projector::Projector;
+pub use units::Units;
+
+pub use glam::{self, DVec3};
+pub use perpend_kernel::{
+    self as kernel, Aabb, Along, CurveData, Definition, DefinitionData, Direction, EntityId, Fingerprint,
+    InvalidDefinition, KnotVector, NurbsCurve, NurbsSurface, PointIndex, SurfaceData,
+};
+pub use perpend_knowledge::{
+    self as knowledge, Basis, Classification, Cleaning, Definitions, Intent, Item, Kind, Operation, Origin, Record,
+    Relation, Relationship, Representation,
+};
+pub use perpend_projection::{
+    self as projection, Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Prepared, Query,
+    QueryError, QueryOptions, Scratch, Statistics, Ties,
+};

@@ -1,0 +1,177 @@
+//! How an entity's parametrisation behaves.
+//!
+//! A curve has the direction U alone.
+
+use perpend_kernel::{Aabb, Direction};
+use serde::{Deserialize, Serialize};
+
+use crate::bare;
+use crate::item::Item;
+
+/// How an entity's parametrisation behaves. An absent part is not known; an empty list says "none found".
+#[derive(Debug, Clone, PartialEq, Default, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Representation {
+    /// How fast the point moves with the parameter, per direction.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub speed: Option<Vec<Item<Speed>>>,
+    /// Parameters where continuity is less than everywhere else.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub breaks: Option<Vec<Item<Break>>>,
+    /// Places where the parametrisation or the shape is not regular.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub irregularities: Option<Vec<Item<Irregularity>>>,
+    /// Whether the entity closes on itself, in u and in v.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub closed: Option<Item<(bool, bool)>>,
+    /// A box that holds the entity.
+    #[serde(default, rename = "box", with = "bare", skip_serializing_if = "Option::is_none")]
+    pub bounds: Option<Item<Aabb>>,
+    /// The arc length of a curve, in the model's unit.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub length: Option<Item<f64>>,
+    /// The area of a surface, in the square of the model's unit.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub area: Option<Item<f64>>,
+    /// The smallest and the largest weight.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub weights: Option<Item<(f64, f64)>>,
+    /// What was done to the defining data on their way in.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub cleaning: Option<Vec<Item<Cleaning>>>,
+}
+
+/// How fast the point moves with one parameter.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Speed {
+    /// The parameter.
+    pub direction: Direction,
+    /// The least length of the first derivative.
+    pub min: f64,
+    /// The greatest length of the first derivative.
+    pub max: f64,
+    /// The parametrisation factor `(max - min) / max`; 1 where `max` is 0 (Piegl et al. 2008, §5).
+    pub factor: f64,
+}
+
+/// A parameter where continuity is less than everywhere else.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct Break {
+    /// The parameter's direction.
+    pub direction: Direction,
+    /// Its value.
+    pub at: f64,
+    /// The order of parametric continuity.
+    pub c: u32,
+    /// The order of geometric continuity.
+    pub g: u32,
+}
+
+/// A place in the parameters of an entity.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum ParameterPoint {
+    /// The parameter of a curve.
+    Curve(f64),
+    /// The parameters of a surface.
+    Surface(f64, f64),
+    /// The whole iso-curve of a surface at this value of a parameter.
+    Iso(Direction, f64),
+}
+
+/// A place where the parametrisation or the shape is not regular.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Irregularity {
+    /// The curve turns back; a surface loses its normal.
+    Cusp {
+        /// Where.
+        at: ParameterPoint,
+        /// The angle by which the tangent (the normal) turns, in radians.
+        angle: f64,
+    },
+    /// An edge of the surface's domain is a single point.
+    Pole {
+        /// The parameter that is constant along the edge.
+        direction: Direction,
+        /// Its value there.
+        at: f64,
+        /// The largest distance between two points of the edge.
+        extent: f64,
+    },
+    /// The entity closes on itself: the start and the end of this parameter are one place.
+    Seam {
+        /// The parameter.
+        direction: Direction,
+        /// The largest distance between corresponding points; left out where it is 0.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        gap: f64,
+    },
+    /// The first derivative in a parameter vanishes.
+    VanishingDerivative {
+        /// The parameter.
+        direction: Direction,
+        /// Where.
+        at: ParameterPoint,
+        /// The length of the derivative there.
+        speed: f64,
+    },
+    /// The tangent (the tangent plane) turns abruptly.
+    Crease {
+        /// The parameter at whose value it turns.
+        direction: Direction,
+        /// The value.
+        at: f64,
+        /// The largest angle by which it turns, in radians.
+        angle: f64,
+    },
+    /// A curve meets itself.
+    Loop {
+        /// The parameter at which it is there first.
+        from: f64,
+        /// The parameter at which it comes back.
+        to: f64,
+        /// The distance between the two points.
+        gap: f64,
+    },
+    /// The curvature of a curve changes its sign.
+    Inflection {
+        /// Where.
+        at: ParameterPoint,
+    },
+    /// Two knots nearly coincide.
+    NearKnots {
+        /// Their direction.
+        direction: Direction,
+        /// The lower one.
+        at: f64,
+        /// Their distance as a share of the domain.
+        apart: f64,
+    },
+    /// A span of the entity is very small.
+    TinySpan {
+        /// Its direction.
+        direction: Direction,
+        /// The parameter at which it starts.
+        at: f64,
+        /// The diagonal of its control points' box.
+        extent: f64,
+    },
+}
+
+fn is_zero(gap: &f64) -> bool {
+    gap.to_bits() == 0
+}
+
+/// What was done to the defining data on their way in.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub enum Cleaning {
+    /// The knots were not clamped; they were, by knot insertion, which leaves the entity as it is.
+    Clamped {
+        /// The direction of the knots.
+        direction: Direction,
+    },
+}

@@ -1,0 +1,170 @@
+//! Edits of a model. Each either happens whole or leaves the model as it was.
+
+use std::sync::{Arc, OnceLock};
+
+use perpend_kernel::{EntityId, InvalidDefinition};
+use perpend_knowledge::{NonFinite, Record};
+
+use crate::enter::{self, IntoDefinition};
+use crate::entity::Entity;
+use crate::model::Model;
+
+/// Why an edit was refused. The model is as it was.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EditError {
+    /// The model has no entity of this id.
+    #[error("the model has no entity {id}")]
+    UnknownEntity {
+        /// The id.
+        id: EntityId,
+    },
+    /// The new definition breaks a rule.
+    #[error("entity {id}: definition: {source}")]
+    Definition {
+        /// The entity to be edited.
+        id: EntityId,
+        /// The rule.
+        source: InvalidDefinition,
+    },
+    /// A number of the new record is not finite.
+    #[error("entity {id}: knowledge: {source}")]
+    Knowledge {
+        /// The entity to be edited.
+        id: EntityId,
+        /// The number.
+        source: NonFinite,
+    },
+    /// The new record refers to an entity that the model does not have.
+    #[error("entity {id}: knowledge: {field} is {target}, which the model does not have: insert that entity first")]
+    DanglingReference {
+        /// The entity to be edited.
+        id: EntityId,
+        /// The field that holds the reference.
+        field: String,
+        /// The entity that is missing.
+        target: EntityId,
+    },
+    /// Another entity's record refers to the entity that is to be removed.
+    #[error(
+        "entity {id} is in use: knowledge.{field} of entity {by} refers to it; change that record or remove entity {by} first"
+    )]
+    InUse {
+        /// The entity that was to be removed.
+        id: EntityId,
+        /// The entity that refers to it.
+        by: EntityId,
+        /// The field that holds the reference.
+        field: String,
+    },
+}
+
+impl Model {
+    /// Adds an entity as the last one and returns its id. Names need not be unique.
+    ///
+    /// Unclamped knots are clamped, and the record says so.
+    ///
+    /// # Errors
+    ///
+    /// The first rule that the defining data break.
+    ///
+    /// # Panics
+    ///
+    /// After 2⁶⁴ - 1 ids.
+    pub fn insert(&mut self, name: &str, definition: impl IntoDefinition) -> Result<EntityId, InvalidDefinition> {
+        let (definition, entry) = definition.enter()?;
+        let id = EntityId::new(self.next_id);
+        self.next_id = self.next_id.checked_add(1).expect("a model has ids for 2^64 - 1 entities");
+        let mut record = None;
+        enter::note(entry, &definition, &mut record);
+        self.index.insert(id, self.entities.len());
+        self.entities.push(Entity::new(id, name.to_owned(), definition, record));
+        self.overview = OnceLock::new();
+        Ok(id)
+    }
+
+    /// Gives an entity a new definition and raises its revision.
+    ///
+    /// Knowledge that was computed from the old definition is forgotten. Origin, destination, intent and relationships stay:
+    /// only those who stated them can say whether they still hold.
+    ///
+    /// # Errors
+    ///
+    /// An unknown id; the first rule that the defining data break.
+    pub fn replace(&mut self, id: EntityId, definition: impl IntoDefinition) -> Result<(), EditError> {
+        let at = self.position(id)?;
+        let (definition, entry) = definition.enter().map_err(|source| EditError::Definition { id, source })?;
+        let entity = &mut self.entities[at];
+        let record = entity.record.get_or_insert_default();
+        record.forget_stale(definition.fingerprint());
+        enter::note(entry, &definition, &mut entity.record);
+        entity.definition = Arc::new(definition);
+        entity.prepared = OnceLock::new();
+        self.edited(at);
+        Ok(())
+    }
+
+    /// Gives an entity a new name and raises its revision.
+    ///
+    /// # Errors
+    ///
+    /// An unknown id.
+    pub fn rename(&mut self, id: EntityId, name: &str) -> Result<(), EditError> {
+        let at = self.position(id)?;
+        name.clone_into(&mut self.entities[at].name);
+        self.edited(at);
+        Ok(())
+    }
+
+    /// Gives an entity a new record. Its revision becomes the record's, but never falls.
+    ///
+    /// # Errors
+    ///
+    /// An unknown id; a number that is not finite; a reference to an entity that the model does not have.
+    pub fn set_record(&mut self, id: EntityId, record: Record) -> Result<(), EditError> {
+        let at = self.position(id)?;
+        record.validate().map_err(|source| EditError::Knowledge { id, source })?;
+        for (field, target) in record.references() {
+            if self.entity(target).is_none() {
+                return Err(EditError::DanglingReference { id, field, target });
+            }
+        }
+        let entity = &mut self.entities[at];
+        let revision = entity.revision().max(record.revision);
+        entity.record = Some(Record { revision, ..record });
+        entity.prepared = OnceLock::new();
+        self.overview = OnceLock::new();
+        Ok(())
+    }
+
+    /// Removes an entity and returns it. Its id is not given again.
+    ///
+    /// # Errors
+    ///
+    /// An unknown id; another entity's record that refers to it.
+    pub fn remove(&mut self, id: EntityId) -> Result<Entity, EditError> {
+        let at = self.position(id)?;
+        for other in self.entities.iter().filter(|other| other.id != id) {
+            let references = other.record.as_ref().map_or_else(Vec::new, Record::references);
+            if let Some((field, _)) = references.into_iter().find(|(_, target)| *target == id) {
+                return Err(EditError::InUse { id, by: other.id, field });
+            }
+        }
+        let entity = self.entities.remove(at);
+        self.index.remove(&id);
+        for (at, entity) in self.entities.iter().enumerate().skip(at) {
+            self.index.insert(entity.id, at);
+        }
+        self.overview = OnceLock::new();
+        Ok(entity)
+    }
+
+    fn position(&self, id: EntityId) -> Result<usize, EditError> {
+        self.index.get(&id).copied().ok_or(EditError::UnknownEntity { id })
+    }
+
+    fn edited(&mut self, at: usize) {
+        self.entities[at].record.get_or_insert_default().revision += 1;
+        self.overview = OnceLock::new();
+    }
+}

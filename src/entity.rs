@@ -1,0 +1,131 @@
+//! An entity of a model.
+
+use std::sync::{Arc, OnceLock};
+
+use perpend_kernel::{Definition, DefinitionData, EntityId, InvalidDefinition};
+use perpend_knowledge::{NonFinite, Record};
+use perpend_projection::Prepared;
+use serde::{Deserialize, Serialize};
+
+use crate::enter;
+
+/// An entity: its identity, its definition, what is known of it, and what queries need of it.
+///
+/// Its form in serde is that of a model's file, and reading it validates: an application can hold entities in files of its
+/// own. Two entities are equal where their files are; what was prepared does not count.
+#[derive(Debug, Clone, Deserialize)]
+#[serde(try_from = "EntityData")]
+pub struct Entity {
+    pub(crate) id: EntityId,
+    pub(crate) name: String,
+    pub(crate) definition: Arc<Definition>,
+    pub(crate) record: Option<Record>,
+    pub(crate) prepared: OnceLock<Arc<Prepared>>,
+}
+
+/// An entity as a file holds it, not validated.
+#[derive(Debug, Deserialize)]
+#[serde(rename = "Entity", deny_unknown_fields)]
+pub(crate) struct EntityData {
+    pub(crate) id: EntityId,
+    #[serde(default)]
+    pub(crate) name: String,
+    pub(crate) definition: DefinitionData,
+    #[serde(default)]
+    pub(crate) knowledge: Option<Record>,
+}
+
+/// Why an entity is refused.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum EntityError {
+    /// Its definition breaks a rule.
+    #[error("definition: {0}")]
+    Definition(#[from] InvalidDefinition),
+    /// A number of its record is not finite.
+    #[error("knowledge: {0}")]
+    Knowledge(#[from] NonFinite),
+}
+
+impl Entity {
+    pub(crate) fn new(id: EntityId, name: String, definition: Definition, record: Option<Record>) -> Self {
+        Self { id, name, definition: Arc::new(definition), record, prepared: OnceLock::new() }
+    }
+
+    /// The id by which the model's queries call it.
+    #[must_use]
+    pub fn id(&self) -> EntityId {
+        self.id
+    }
+
+    /// The name; it need not be unique.
+    #[must_use]
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// The defining data.
+    #[must_use]
+    pub fn definition(&self) -> &Arc<Definition> {
+        &self.definition
+    }
+
+    /// What is known of it; none: nothing yet.
+    #[must_use]
+    pub fn record(&self) -> Option<&Record> {
+        self.record.as_ref()
+    }
+
+    /// How often it was edited, as far as its record says.
+    #[must_use]
+    pub fn revision(&self) -> u64 {
+        self.record.as_ref().map_or(0, |record| record.revision)
+    }
+
+    /// The items of its record that were computed from another definition than it has now, by the names of their fields.
+    ///
+    /// They are kept and written, and they are not to be believed.
+    #[must_use]
+    pub fn stale(&self) -> Vec<String> {
+        self.record.as_ref().map_or_else(Vec::new, |record| record.stale(self.definition.fingerprint()))
+    }
+
+    /// What queries need of it, built on first use and shared by threads.
+    #[must_use]
+    pub fn prepared(&self) -> &Arc<Prepared> {
+        self.prepared.get_or_init(|| Arc::new(Prepared::new(Arc::clone(&self.definition))))
+    }
+}
+
+impl PartialEq for Entity {
+    fn eq(&self, other: &Self) -> bool {
+        (self.id, &self.name, &self.definition, &self.record)
+            == (other.id, &other.name, &other.definition, &other.record)
+    }
+}
+
+impl TryFrom<EntityData> for Entity {
+    type Error = EntityError;
+
+    fn try_from(data: EntityData) -> Result<Self, EntityError> {
+        let (definition, entry) = data.definition.enter()?;
+        let mut record = data.knowledge;
+        if let Some(record) = &record {
+            record.validate()?;
+        }
+        enter::note(entry, &definition, &mut record);
+        Ok(Self::new(data.id, data.name, definition, record))
+    }
+}
+
+impl Serialize for Entity {
+    fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        use serde::ser::SerializeStruct;
+        let mut s = serializer.serialize_struct("Entity", 4)?;
+        s.serialize_field("id", &self.id)?;
+        s.serialize_field("name", &self.name)?;
+        s.serialize_field("definition", self.definition.as_ref())?;
+        s.serialize_field("knowledge", &self.record)?;
+        s.end()
+    }
+}

@@ -1,0 +1,85 @@
+//! Queries to one entity of a model.
+
+use glam::DVec3;
+use perpend_kernel::EntityId;
+use perpend_projection::{FootPoint, Prepared, Query, QueryError, QueryOptions, Scratch, Ties};
+
+use crate::batch;
+use crate::entity::Entity;
+use crate::model::Model;
+use crate::projector::Projector;
+
+impl Model {
+    /// The point of an entity that is nearest to `p`, with its proof.
+    ///
+    /// # Errors
+    ///
+    /// An unknown id; a coordinate that is no finite number or beyond 1e150.
+    pub fn project(&self, id: EntityId, p: DVec3) -> Result<FootPoint, QueryError> {
+        let foot = self.project_with(id, p, &QueryOptions::default())?;
+        Ok(foot.expect("an entity has a nearest point where no distance is too far"))
+    }
+
+    /// As [`project`](Self::project), with options; none where the entity is beyond `max_distance`.
+    ///
+    /// # Errors
+    ///
+    /// As [`project`](Self::project); an option without meaning.
+    pub fn project_with(
+        &self,
+        id: EntityId,
+        p: DVec3,
+        options: &QueryOptions,
+    ) -> Result<Option<FootPoint>, QueryError> {
+        let prepared = self.prepared(id)?;
+        Ok(prepared.project(&Query::new(p, *options)?, &mut Scratch::default()))
+    }
+
+    /// The nearest points to many points, in their order, on all cores where the feature `rayon` is on.
+    ///
+    /// Every answer is that of [`project_with`](Self::project_with), bit for bit. An error holds for its own point alone.
+    #[must_use]
+    pub fn project_all(
+        &self,
+        id: EntityId,
+        ps: &[DVec3],
+        options: &QueryOptions,
+    ) -> Vec<Result<Option<FootPoint>, QueryError>> {
+        let prepared = self.prepared(id);
+        batch::answers(ps, |index, p, scratch| {
+            let query = Query::new(*p, *options).map_err(|error| at_index(error, index));
+            Ok(prepared.clone()?.project(&query?, scratch))
+        })
+    }
+
+    /// All points of an entity that are nearest to `p` within the gap; none where it is beyond `max_distance`.
+    ///
+    /// # Errors
+    ///
+    /// As [`project_with`](Self::project_with).
+    pub fn project_ties(&self, id: EntityId, p: DVec3, options: &QueryOptions) -> Result<Option<Ties>, QueryError> {
+        let prepared = self.prepared(id)?;
+        Ok(prepared.project_ties(&Query::new(p, *options)?, &mut Scratch::default()))
+    }
+
+    /// An entity made ready for many queries by one thread, with the working memory that they reuse.
+    ///
+    /// # Errors
+    ///
+    /// An unknown id.
+    pub fn projector(&self, id: EntityId) -> Result<Projector<'_>, QueryError> {
+        Ok(Projector::new(self.prepared(id)?))
+    }
+
+    fn prepared(&self, id: EntityId) -> Result<&Prepared, QueryError> {
+        self.entity(id).map(|entity: &Entity| entity.prepared().as_ref()).ok_or(QueryError::UnknownEntity { id })
+    }
+}
+
+/// The error of a single query, as one of the point at `index` of a batch.
+pub(crate) fn at_index(error: QueryError, index: usize) -> QueryError {
+    match error {
+        QueryError::InvalidPoint { x, y, z, .. } => QueryError::InvalidPoint { index, x, y, z },
+        error => error,
+    }
+}
