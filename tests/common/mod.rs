@@ -1,0 +1,13 @@
+//! What the tests of the whole share: an oracle that has no code in common with the solver, generators of entities and points that
+//! are hard on purpose, and readers of the test sets.
+
+#![allow(dead_code, unreachable_pub, reason = "every test is a crate of its own and uses its part")]
+
+pub mod adversaries;
+pub mod corpus;
+pub mod double_double;
+pub mod judgement;
+pub mod oracle;
+pub mod points;
+pub mod random;
+pub mod shape;
