@@ -5,8 +5,8 @@ use std::sync::Arc;
 use glam::DVec3;
 use perpend_kernel::{Definition, Direction, NurbsSurface};
 
-use crate::answer::{FootPoint, Method, Multiplicity, Parameter, Place};
-use crate::hierarchy::{Hierarchy, Solution, Tie};
+use crate::answer::{Continuum, FootPoint, Method, Multiplicity, Parameter, Place, Ties};
+use crate::hierarchy::{Hierarchy, Solution, Tie, TieSet};
 use crate::landmarks::{Landmarks, turns, vanishes};
 use crate::query::Query;
 use crate::scratch::Scratch;
@@ -46,17 +46,22 @@ impl Prepared {
     pub fn project_near(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Option<FootPoint> {
         let solution = self.hierarchy.project(query, hint, &mut scratch.hierarchy)?;
         scratch.statistics += solution.statistics;
-        Some(self.answer(query, &solution))
+        Some(self.answer(&solution))
     }
 
-    /// All nearest points.
+    /// All nearest points of the entity, within the query's gap; none where nothing lies within its `max_distance`.
     #[must_use]
-    pub fn project_ties(&self, query: &Query, scratch: &mut Scratch) -> Option<crate::answer::Ties> {
-        let nearest = self.project(query, scratch)?;
-        Some(crate::answer::Ties { nearest, points: vec![nearest], continua: Vec::new(), complete: false })
+    pub fn project_ties(&self, query: &Query, scratch: &mut Scratch) -> Option<Ties> {
+        let TieSet { nearest, feet, continua, complete } = self.hierarchy.ties(query, &mut scratch.hierarchy)?;
+        Some(Ties {
+            nearest: self.answer(&nearest),
+            points: feet.iter().map(|foot| self.answer(foot)).collect(),
+            continua: continua.into_iter().map(|boxes| Continuum { boxes }).collect(),
+            complete,
+        })
     }
 
-    fn answer(&self, query: &Query, solution: &Solution) -> FootPoint {
+    fn answer(&self, solution: &Solution) -> FootPoint {
         let frame = &self.hierarchy.frame;
         let distance = frame.length(solution.distance);
         let lower_bound = frame.length(solution.lower_bound).min(distance);
@@ -78,7 +83,6 @@ impl Prepared {
             }
         };
         let side = normal.map(|normal| -solution.offset.dot(normal));
-        let _ = query;
         FootPoint {
             parameter,
             point,

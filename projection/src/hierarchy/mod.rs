@@ -16,6 +16,8 @@
 
 mod certify;
 mod convex;
+#[cfg(test)]
+mod double_double;
 mod form;
 mod frame;
 mod jet;
@@ -25,6 +27,7 @@ mod newton;
 mod oriented_box;
 mod piece;
 mod state;
+mod ties;
 
 use glam::DVec3;
 use perpend_kernel::{Aabb, Definition, Direction, cartesian};
@@ -37,6 +40,7 @@ use self::leaf::Leaf;
 use self::newton::{Domain, Found, Search};
 use self::piece::Piece;
 use self::state::{Foot, State};
+pub(crate) use self::ties::TieSet;
 use crate::query::Query;
 use crate::statistics::Statistics;
 use crate::tree::{BoxTree, Candidate};
@@ -139,7 +143,7 @@ impl Hierarchy {
         let (index, looked) = self.tree.descend(point).expect("an entity has leaves");
         statistics.boxes += looked;
         let leaf = &self.leaves[index as usize];
-        let asked = query.options.gap.unwrap_or(1e-9 * self.frame.size) * self.frame.scale;
+        let asked = self.asked_gap(query);
         let near = leaf.box_distance_squared(point).sqrt();
         let x = point - leaf.origin;
         let (s, t) = leaf.linear_guess(x);
@@ -151,8 +155,15 @@ impl Hierarchy {
             decrease: 2e-4 * asked * asked.max(near),
         };
         let found = newton::search(leaf, x, search, &mut statistics, |_| false);
-        let whole = Part { leaf, index, within: Domain::WHOLE };
-        let best = whole.foot(&found);
+        self.state(query, index, &found, statistics)
+    }
+
+    /// The state of a query of which one point of one leaf is known.
+    fn state(&self, query: &Query, index: u32, found: &Found, statistics: Statistics) -> State {
+        let point = self.frame.enter(query.point);
+        let leaf = &self.leaves[index as usize];
+        let best = Part { leaf, index, within: Domain::WHOLE }.foot(found);
+        let asked = self.asked_gap(query);
         // The proof is sought closer than asked by what rounding may take away again. Where that leaves less than half, or
         // the asked gap is finer than the forms can tell at this distance, the finest gap that they can tell is sought.
         let left = asked - 2.0 * self.reserve - 20.0 * ROUNDING * point.length();
@@ -168,6 +179,10 @@ impl Hierarchy {
             work: query.options.work,
             statistics,
         }
+    }
+
+    fn asked_gap(&self, query: &Query) -> f64 {
+        query.options.gap.unwrap_or(1e-9 * self.frame.size) * self.frame.scale
     }
 
     /// Proves every leaf that could hold a point nearer than `tau`, the nearest box first.
@@ -205,23 +220,25 @@ impl Hierarchy {
         let (best, jet) = (state.best, state.best_jet);
         let (polished, jet) = self.polish(&best, jet, state);
         let tie = self.tie(state, &polished, &jet, coincidence);
-        let leaf = &self.leaves[polished.leaf as usize];
-        let (u, v) = leaf.parameters(polished.s, polished.t);
-        // at the parameters as they are reported
+        Solution { tie, ..self.solution_at(&polished, lower.max(0.0), state) }
+    }
+
+    /// A foot at the definition's parameters as they are reported.
+    fn solution_at(&self, foot: &Foot, lower_bound: f64, state: &State) -> Solution {
+        let leaf = &self.leaves[foot.leaf as usize];
+        let (u, v) = leaf.parameters(foot.s, foot.t);
         let (s, t) = leaf.own_parameters(u, v);
-        let jet = leaf.jet(s, t);
-        let c = jet.cartesian();
+        let c = leaf.jet(s, t).cartesian();
         let offset = c.p - (state.point - leaf.origin);
         let distance = offset.length();
-        state.statistics.evaluations += 1;
         Solution {
             u,
             v,
             distance,
-            lower_bound: lower.clamp(0.0, distance),
+            lower_bound: lower_bound.min(distance),
             normal: normal_direction(c.ps, c.pt),
             offset,
-            tie,
+            tie: Tie::None,
             statistics: state.statistics,
         }
     }
@@ -377,5 +394,105 @@ impl Domain {
             }
         }
         [low, high]
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::query::QueryOptions;
+    use double_double::Random;
+    use perpend_kernel::{NurbsCurve, NurbsSurface};
+
+    fn knots(degree: usize, points: usize, random: &mut Random) -> Vec<f64> {
+        let mut inner: Vec<f64> = (0..points - degree - 1).map(|_| random.between(0.05, 0.95)).collect();
+        inner.sort_by(f64::total_cmp);
+        let mut knots = vec![0.0; degree + 1];
+        knots.extend(inner);
+        knots.extend(std::iter::repeat_n(1.0, degree + 1));
+        knots
+    }
+
+    fn entities(random: &mut Random) -> Vec<Definition> {
+        let mut entities = Vec::new();
+        for degree in [1, 2, 3, 5, 9] {
+            for rational in [false, true] {
+                let n = degree + 4;
+                let points = (0..n).map(|_| random.point()).collect();
+                let weights = rational.then(|| (0..n).map(|_| 10.0_f64.powf(random.between(-1.0, 1.0))).collect());
+                let knots = knots(degree, n, random);
+                entities.push(NurbsCurve::new(degree, knots, points, weights).expect("valid").into());
+            }
+        }
+        for (p, q) in [(1, 1), (2, 3), (3, 3), (5, 2)] {
+            for rational in [false, true] {
+                let (n, m) = (p + 3, q + 2);
+                let at = |i: usize, j: usize, random: &mut Random| {
+                    DVec3::new(i as f64, j as f64, 0.0) + 0.7 * random.point()
+                };
+                let points = (0..n).map(|i| (0..m).map(|j| at(i, j, random)).collect()).collect();
+                let weight = |random: &mut Random| 10.0_f64.powf(random.between(-1.0, 1.0));
+                let weights = rational.then(|| (0..n).map(|_| (0..m).map(|_| weight(random)).collect()).collect());
+                let knots = (knots(p, n, random), knots(q, m, random));
+                entities.push(NurbsSurface::new((p, q), knots, points, weights).expect("valid").into());
+            }
+        }
+        entities
+    }
+
+    /// The proof must not depend on a good start: any point of any leaf, without Newton's method, leads to the same distance.
+    #[test]
+    fn a_spoilt_start_costs_work_and_changes_no_distance() {
+        let mut random = Random(7);
+        let mut workspace = Workspace::default();
+        for definition in entities(&mut random) {
+            let hierarchy = Hierarchy::new(&definition, &[]);
+            let size = hierarchy.frame.size;
+            for k in 0..60 {
+                let p = definition.control_points()[k % definition.control_points().len()]
+                    + [0.01, 0.3, 3.0][k % 3] * size * random.point();
+                let query = Query::new(p, QueryOptions::default()).expect("finite");
+                let good = hierarchy.project(&query, None, &mut workspace).expect("no limit");
+                let index = (random.next() % hierarchy.leaves.len() as u64) as u32;
+                let leaf = &hierarchy.leaves[index as usize];
+                let jet = leaf.jet(0.3, 0.6);
+                let x = hierarchy.frame.enter(p) - leaf.origin;
+                let found = Found { distance: jet.cartesian().p.distance(x), s: 0.3, t: 0.6, jet };
+                let mut state = hierarchy.state(&query, index, &found, Statistics::default());
+                hierarchy.walk(&mut state, f64::INFINITY, &mut workspace);
+                let spoilt = hierarchy.solution(&mut state, 0.0);
+                let gap = hierarchy.asked_gap(&query) + 64.0 * ROUNDING * hierarchy.frame.enter(p).length();
+                assert_eq!(state.statistics.unresolved, 0);
+                assert!(spoilt.distance - spoilt.lower_bound <= gap, "{spoilt:?}");
+                assert!(spoilt.lower_bound <= good.distance && good.lower_bound <= spoilt.distance);
+            }
+        }
+    }
+
+    #[test]
+    fn a_hint_changes_no_bit() {
+        let mut random = Random(11);
+        let mut workspace = Workspace::default();
+        for definition in entities(&mut random) {
+            let hierarchy = Hierarchy::new(&definition, &[]);
+            let corner = definition.control_points()[0];
+            for _ in 0..40 {
+                let p = corner + 0.5 * hierarchy.frame.size * random.point();
+                let query = Query::new(p, QueryOptions::default()).expect("finite");
+                let plain = hierarchy.project(&query, None, &mut workspace).expect("no limit");
+                let foot = {
+                    let (u, v) = (plain.u, plain.v);
+                    match &definition {
+                        Definition::NurbsCurve(curve) => curve.point(u),
+                        Definition::NurbsSurface(surface) => surface.point(u, v),
+                    }
+                };
+                for hint in [corner, foot] {
+                    let hinted = hierarchy.project(&query, Some(hint), &mut workspace).expect("no limit");
+                    let bits = |s: &Solution| [s.u, s.v, s.distance, s.lower_bound].map(f64::to_bits);
+                    assert_eq!(bits(&plain), bits(&hinted));
+                }
+            }
+        }
     }
 }

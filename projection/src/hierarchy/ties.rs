@@ -1,0 +1,271 @@
+//! All nearest points: the boxes of parameters that no proof closes at a distance just above the nearest.
+//!
+//! The form is made at `reach`, the upper bound plus the gap, and its boxes are split until each is one of these:
+//!
+//! - positive: it holds no point within `reach`;
+//! - reduced to a corner, or convex: its points within `reach`, if any, surround one foot, which Newton's method finds;
+//! - as narrow as the resolution: undecided. Undecided boxes that touch make one set. Where Newton's method leads from all of them to one
+//!   point, that is a foot (its form is flat, or rounding hides its curvature); else they are a continuum.
+
+use glam::DVec3;
+
+use super::certify::Part;
+use super::convex::{self, Patch};
+use super::form::rounding_bound;
+use super::leaf::Leaf;
+use super::newton::{self, Domain, Found, Search};
+use super::state::{Foot, State};
+use super::{Hierarchy, ROUNDING, Solution, Tie, Workspace, net, squared};
+use crate::answer::ParameterBox;
+use crate::query::Query;
+
+/// Undecided boxes are split down to this share of the entity's size, or to the coincidence if that is more.
+const RESOLUTION: f64 = 1.0 / 64.0;
+
+/// All nearest points of an entity.
+#[derive(Debug)]
+pub(crate) struct TieSet {
+    pub nearest: Solution,
+    pub feet: Vec<Solution>,
+    /// Sets of touching boxes.
+    pub continua: Vec<Vec<ParameterBox>>,
+    pub complete: bool,
+}
+
+/// A box that waits: its net and degrees, and the bound of its rounding.
+struct Cell {
+    net: Vec<f64>,
+    m: usize,
+    n: usize,
+    domain: Domain,
+    rounding: f64,
+}
+
+/// An undecided box of a leaf.
+#[derive(Debug, Clone, Copy)]
+struct Undecided {
+    leaf: u32,
+    domain: Domain,
+    parameters: ParameterBox,
+}
+
+impl Hierarchy {
+    /// The nearest points; none where nothing is within the query's `max_distance`.
+    pub(crate) fn ties(&self, query: &Query, workspace: &mut Workspace) -> Option<TieSet> {
+        let mut nearest = self.project(query, None, workspace)?;
+        let mut state = self.start(query);
+        let coincidence = self.coincidence(query);
+        let reach = nearest.distance + state.gap;
+        workspace.candidates.clear();
+        self.tree.nearer_than(state.point, squared(reach) * (1.0 + 8.0 * ROUNDING), &mut workspace.candidates);
+        workspace.candidates.sort_unstable_by_key(|candidate| candidate.item);
+        let (mut feet, mut undecided) = (Vec::new(), Vec::new());
+        for candidate in &workspace.candidates {
+            let leaf = &self.leaves[candidate.item as usize];
+            if leaf.box_distance_squared(state.point) <= squared(reach) {
+                let part = Part { leaf, index: candidate.item, within: Domain::WHOLE };
+                self.sift(part, reach, coincidence, &mut state, &mut feet, &mut undecided);
+            }
+        }
+        let mut continua = Vec::new();
+        for set in connected(undecided) {
+            match self.common_foot(&set, coincidence, &mut state) {
+                Some(foot) => feet.push(foot),
+                None => continua.push(set.into_iter().map(|u| u.parameters).collect::<Vec<_>>()),
+            }
+        }
+        let feet = self.distinct(feet, reach, coincidence, &continua, &mut state);
+        nearest.tie = match (continua.is_empty(), feet.len()) {
+            (false, _) => Tie::Connected,
+            (true, 0 | 1) => Tie::None,
+            (true, _) => Tie::Apart,
+        };
+        let feet = feet
+            .iter()
+            .map(|foot| Solution { tie: nearest.tie, ..self.solution_at(foot, nearest.lower_bound, &state) });
+        Some(TieSet { feet: feet.collect(), nearest, continua, complete: state.work > 0 })
+    }
+
+    /// Splits a leaf until every box is decided or narrow.
+    fn sift(
+        &self,
+        part: Part<'_>,
+        reach: f64,
+        coincidence: f64,
+        state: &mut State,
+        feet: &mut Vec<Foot>,
+        undecided: &mut Vec<Undecided>,
+    ) {
+        let leaf = part.leaf;
+        let x = state.point - leaf.origin;
+        let threshold = if leaf.rational { 0.0 } else { squared(reach) };
+        let (m, n) = leaf.shape().form_degree();
+        let mut form = Vec::new();
+        leaf.tables.form(leaf.shape(), x, reach, &mut form);
+        let rounding = rounding_bound(leaf.degree, x.length(), leaf.radius, reach, leaf.heaviest);
+        let mut cells = vec![Cell { net: form, m, n, domain: Domain::WHOLE, rounding }];
+        let mut matrices = Vec::new();
+        while let Some(mut cell) = cells.pop() {
+            if net::least(&cell.net) > threshold + cell.rounding {
+                continue;
+            }
+            while reduce(&mut cell) {}
+            let extent = (cell.domain.s.1 - cell.domain.s.0, cell.domain.t.1 - cell.domain.t.0);
+            let patch = Patch { g: &cell.net, m: cell.m, n: cell.n, extent, rounding: cell.rounding };
+            let decided = (cell.m == 0 && cell.n == 0) || convex::curvature(patch, &mut matrices).is_some();
+            if decided {
+                let start = (0.5 * (cell.domain.s.0 + cell.domain.s.1), 0.5 * (cell.domain.t.0 + cell.domain.t.1));
+                feet.push(part.foot(&converge(leaf, x, cell.domain, start, state)));
+            } else if state.work == 0 || diameter(leaf, &cell.domain) <= coincidence.max(RESOLUTION) {
+                let (from, to) = (cell.domain.s, cell.domain.t);
+                let low = leaf.parameters(from.0, to.0);
+                let high = leaf.parameters(from.1, to.1);
+                let parameters = ParameterBox { u: (low.0, high.0), v: (low.1, high.1) };
+                undecided.push(Undecided { leaf: part.index, domain: cell.domain, parameters });
+            } else {
+                state.work -= 1;
+                cells.extend(halves(cell));
+            }
+        }
+    }
+
+    /// The one point that Newton's method leads to from all boxes of a set, if it is one.
+    fn common_foot(&self, set: &[Undecided], coincidence: f64, state: &mut State) -> Option<Foot> {
+        let mut feet = set.iter().map(|u| {
+            let leaf = &self.leaves[u.leaf as usize];
+            let start = (0.5 * (u.domain.s.0 + u.domain.s.1), 0.5 * (u.domain.t.0 + u.domain.t.1));
+            let found = converge(leaf, state.point - leaf.origin, Domain::WHOLE, start, state);
+            Part { leaf, index: u.leaf, within: Domain::WHOLE }.foot(&found)
+        });
+        let mut best = feet.next()?;
+        for foot in feet {
+            if foot.point.distance(best.point) > coincidence {
+                return None;
+            }
+            if foot.distance < best.distance {
+                best = foot;
+            }
+        }
+        Some(best)
+    }
+
+    /// The feet within `reach`, no two closer than `coincidence` and none in a continuum, in ascending order of parameters.
+    fn distinct(
+        &self,
+        feet: Vec<Foot>,
+        reach: f64,
+        coincidence: f64,
+        continua: &[Vec<ParameterBox>],
+        state: &mut State,
+    ) -> Vec<Foot> {
+        let mut polished: Vec<((f64, f64), Foot)> = feet
+            .into_iter()
+            .filter(|foot| foot.distance <= reach)
+            .map(|foot| {
+                let (foot, _) = self.polish(&foot, None, state);
+                (self.leaves[foot.leaf as usize].parameters(foot.s, foot.t), foot)
+            })
+            .collect();
+        polished.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        let mut distinct: Vec<Foot> = Vec::new();
+        for ((u, v), foot) in polished {
+            let in_continuum = continua.iter().flatten().any(|b| holds(b.u, u) && holds(b.v, v));
+            if !in_continuum && distinct.iter().all(|other| other.point.distance(foot.point) > coincidence) {
+                distinct.push(foot);
+            }
+        }
+        distinct
+    }
+}
+
+/// The foot inside a box, from `start`, to convergence.
+fn converge(leaf: &Leaf, x: DVec3, domain: Domain, start: (f64, f64), state: &mut State) -> Found {
+    // a flat minimum is approached by a constant factor only: many iterations, and no early end
+    let search = Search { domain, start, known: None, iterations: 100, decrease: 0.0 };
+    newton::search(leaf, x, search, &mut state.statistics, |_| false)
+}
+
+/// Replaces a box by an edge whose coefficients are proven to be the least: its points within reach surround feet on that edge.
+fn reduce(cell: &mut Cell) -> bool {
+    let (m, n, width) = (cell.m, cell.n, cell.n + 1);
+    let enough = 2.0 * cell.rounding;
+    if m > 0 {
+        for row in [0, m] {
+            if net::rows_above(&cell.net, width, row) > enough {
+                cell.net = cell.net[row * width..(row + 1) * width].to_vec();
+                let at = if row == 0 { cell.domain.s.0 } else { cell.domain.s.1 };
+                (cell.m, cell.domain.s) = (0, (at, at));
+                return true;
+            }
+        }
+    }
+    if n > 0 {
+        for column in [0, n] {
+            if net::columns_above(&cell.net, width, column, enough) > enough {
+                cell.net = cell.net.iter().skip(column).step_by(width).copied().collect();
+                let at = if column == 0 { cell.domain.t.0 } else { cell.domain.t.1 };
+                (cell.n, cell.domain.t) = (0, (at, at));
+                return true;
+            }
+        }
+    }
+    false
+}
+
+fn halves(cell: Cell) -> [Cell; 2] {
+    let Cell { net: mut low, m, n, domain, rounding } = cell;
+    let (_, largest) = net::extremes(&low);
+    let mut high = vec![0.0; low.len()];
+    let down = n == 0 || (m > 0 && net::bends_more_down(&low, m, n));
+    let (mut first, mut second) = (domain, domain);
+    let degree = if down {
+        net::halve_down(&mut low, &mut high, m, n + 1);
+        let middle = 0.5 * (domain.s.0 + domain.s.1);
+        (first.s.1, second.s.0) = (middle, middle);
+        m
+    } else {
+        net::halve_along(&mut low, &mut high, n);
+        let middle = 0.5 * (domain.t.0 + domain.t.1);
+        (first.t.1, second.t.0) = (middle, middle);
+        n
+    };
+    let rounding = rounding + degree as f64 * ROUNDING * largest;
+    [Cell { net: low, m, n, domain: first, rounding }, Cell { net: high, m, n, domain: second, rounding }]
+}
+
+/// The largest distance between the corners and the middle of a box of a leaf: as good a diameter as the resolution needs.
+fn diameter(leaf: &Leaf, domain: &Domain) -> f64 {
+    let middle = (0.5 * (domain.s.0 + domain.s.1), 0.5 * (domain.t.0 + domain.t.1));
+    let corners =
+        [(domain.s.0, domain.t.0), (domain.s.0, domain.t.1), (domain.s.1, domain.t.0), (domain.s.1, domain.t.1)];
+    let points = corners.into_iter().chain([middle]).map(|(s, t)| leaf.jet(s, t).cartesian().p);
+    let points: smallvec::SmallVec<[DVec3; 5]> = points.collect();
+    points.iter().flat_map(|a| points.iter().map(|b| a.distance(*b))).fold(0.0, f64::max)
+}
+
+fn holds((from, to): (f64, f64), x: f64) -> bool {
+    from <= x && x <= to
+}
+
+/// Groups boxes that touch.
+fn connected(boxes: Vec<Undecided>) -> Vec<Vec<Undecided>> {
+    let overlap = |a: (f64, f64), b: (f64, f64)| a.0 <= b.1 && b.0 <= a.1;
+    let touch = |a: &Undecided, b: &Undecided| {
+        overlap(a.parameters.u, b.parameters.u) && overlap(a.parameters.v, b.parameters.v)
+    };
+    let mut waiting = boxes;
+    let mut sets = Vec::new();
+    while let Some(first) = waiting.pop() {
+        let mut set = vec![first];
+        let mut next = 0;
+        while next < set.len() {
+            let here = set[next];
+            let (near, rest) = waiting.into_iter().partition(|other| touch(&here, other));
+            set.extend::<Vec<_>>(near);
+            waiting = rest;
+            next += 1;
+        }
+        sets.push(set);
+    }
+    sets
+}
