@@ -11,6 +11,10 @@ pub(crate) const ROOM: usize = MAX_DEGREE + 1;
 pub(crate) fn functions(knots: &KnotVector, span: usize, u: f64) -> [f64; ROOM] {
     let (p, t) = (knots.degree(), knots.as_slice());
     let mut values = [0.0; ROOM];
+    if let Some(only) = interpolated(knots, span, u) {
+        values[only] = 1.0;
+        return values;
+    }
     let (mut left, mut right) = ([0.0; ROOM], [0.0; ROOM]);
     values[0] = 1.0;
     for j in 1..=p {
@@ -53,6 +57,10 @@ pub(crate) fn derivatives(knots: &KnotVector, span: usize, u: f64, order: usize,
     for j in 0..=p {
         table[0][j] = ndu[j][p];
     }
+    if let Some(only) = interpolated(knots, span, u) {
+        table[0] = [0.0; ROOM];
+        table[0][only] = 1.0;
+    }
     for r in 0..=p {
         let mut rows = [[0.0; ROOM]; 2];
         rows[0][0] = 1.0;
@@ -82,6 +90,19 @@ pub(crate) fn derivatives(knots: &KnotVector, span: usize, u: f64, order: usize,
     for (k, row) in table.iter_mut().enumerate().take(order + 1).skip(1) {
         row[..=p].iter_mut().for_each(|x| *x *= factor);
         factor *= (p - k) as f64;
+    }
+}
+
+/// The one basis function of the span that is 1 at `u`, if `u` is an end of the span with a knot of at least the degree's
+/// multiplicity: there the curve passes its control point. The recursion alone gets 1 only up to rounding.
+fn interpolated(knots: &KnotVector, span: usize, u: f64) -> Option<usize> {
+    let (p, t) = (knots.degree(), knots.as_slice());
+    if u == t[span] && t[span + 1 - p] == u {
+        Some(0)
+    } else if u == t[span + 1] && t[span + p] == u {
+        Some(p)
+    } else {
+        None
     }
 }
 

@@ -23,8 +23,9 @@ pub fn extraction(knots: &KnotVector, span: Span) -> Vec<Vec<f64>> {
                 for j in (r..=p).rev() {
                     let (a, b) = (t[span.index - p + j], t[span.index + 1 + j - r]);
                     let (from_a, to_b) = ((argument - a) / (b - a), (b - argument) / (b - a));
-                    for k in 0..=p {
-                        d[j][k] = to_b * d[j - 1][k] + from_a * d[j][k];
+                    let (before, rest) = d.split_at_mut(j);
+                    for (share, previous) in rest[0].iter_mut().zip(&before[j - 1]) {
+                        *share = to_b * previous + from_a * *share;
                     }
                 }
             }

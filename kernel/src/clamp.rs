@@ -2,6 +2,7 @@
 
 use glam::DVec4;
 
+use crate::edit::Blend;
 use crate::invalid::{Along, InvalidDefinition};
 use crate::knots::{KnotVector, check_order};
 
@@ -49,7 +50,7 @@ pub(crate) fn clamp(
 /// Clamps the start: control points before the domain give way to blossoms at its first parameter.
 ///
 /// With `a` the start and `t` the knots, the new point `i` is the blossom of the arguments `a, …, a, t_(s+1), …, t_(s+i)`,
-/// where `s` is the last index with `t_s = a` (Ramshaw's blossoming; The NURBS Book does it by A5.1).
+/// where `s` is the last index with `t_s = a`: knot insertion, a convex combination (The NURBS Book, §5.2).
 fn clamp_start(p: usize, knots: Vec<f64>, net: Vec<DVec4>) -> (Vec<f64>, Vec<DVec4>) {
     let start = knots[p];
     if knots[0] == start {
@@ -58,30 +59,10 @@ fn clamp_start(p: usize, knots: Vec<f64>, net: Vec<DVec4>) -> (Vec<f64>, Vec<DVe
     let s = knots.partition_point(|k| *k <= start) - 1;
     let mut clamped = vec![start; p + 1];
     clamped.extend_from_slice(&knots[s + 1..]);
-    let mut points: Vec<DVec4> = (0..p)
-        .map(|i| {
-            let mut arguments = vec![start; p - i];
-            arguments.extend_from_slice(&knots[s + 1..=s + i]);
-            blossom(p, &knots, &net, s, &arguments)
-        })
-        .collect();
+    let mut points: Vec<DVec4> =
+        (0..p).map(|i| Blend::blossom(p, &knots, &clamped[i + 1..=i + p]).of_homogeneous(&net)).collect();
     points.extend_from_slice(&net[s..]);
     (clamped, points)
-}
-
-/// The blossom (polar form) of span `span` of a B-spline at `p` arguments.
-///
-/// Affine combinations by two quotients, never `1 - t`: the ratio of weights then keeps its relative accuracy.
-pub(crate) fn blossom(p: usize, knots: &[f64], net: &[DVec4], span: usize, arguments: &[f64]) -> DVec4 {
-    let mut d: Vec<DVec4> = net[span - p..=span].to_vec();
-    for r in 1..=p {
-        for j in (r..=p).rev() {
-            let (a, b) = (knots[span - p + j], knots[span + 1 + j - r]);
-            let (from_a, to_b) = ((arguments[r - 1] - a) / (b - a), (b - arguments[r - 1]) / (b - a));
-            d[j] = to_b * d[j - 1] + from_a * d[j];
-        }
-    }
-    d[p]
 }
 
 /// Clamps a net in u: every column is a curve.
@@ -126,7 +107,6 @@ pub(crate) fn clamp_columns(
 
 #[cfg(test)]
 mod tests {
-    use super::*;
     use crate::NurbsCurve;
     use glam::DVec3;
 

@@ -89,6 +89,18 @@ impl NurbsCurve {
         }
     }
 
+    /// A curve from knots that fit, and points and weights still to be checked.
+    pub(crate) fn checked(
+        knots: KnotVector,
+        control_points: Vec<DVec3>,
+        weights: Option<Vec<f64>>,
+    ) -> Result<Self, InvalidDefinition> {
+        debug_assert_eq!(knots.point_count(), control_points.len(), "knots and control points disagree");
+        check_points(control_points.len(), control_points.iter().copied(), PointIndex::Curve)?;
+        check_weights(weights.as_deref().unwrap_or_default(), PointIndex::Curve)?;
+        Ok(Self { knots, control_points, weights })
+    }
+
     /// The degree.
     #[must_use]
     pub fn degree(&self) -> usize {

@@ -110,6 +110,21 @@ impl NurbsSurface {
         }
     }
 
+    /// A surface from knots that fit, and points and weights still to be checked.
+    pub(crate) fn checked(
+        u: KnotVector,
+        v: KnotVector,
+        control_points: Vec<DVec3>,
+        weights: Option<Vec<f64>>,
+    ) -> Result<Self, InvalidDefinition> {
+        debug_assert_eq!(u.point_count() * v.point_count(), control_points.len(), "knots and net disagree");
+        let columns = v.point_count();
+        let index = |i: usize| PointIndex::Surface(i / columns, i % columns);
+        check_points(control_points.len(), control_points.iter().copied(), index)?;
+        check_weights(weights.as_deref().unwrap_or_default(), index)?;
+        Ok(Self { u, v, control_points, weights })
+    }
+
     /// The degrees in u and v.
     #[must_use]
     pub fn degree(&self) -> (usize, usize) {
@@ -233,15 +248,15 @@ impl NurbsSurface {
         basis::derivatives(&self.v, j0 + q, v, dv, &mut along);
         let mut form = [[DVec4::ZERO; ROOM]; ROOM];
         for i in 0..=p {
-            for l in 0..=dv {
+            for (l, functions) in along[..=dv].iter().enumerate() {
                 let mut line = DVec4::ZERO;
-                for (j, b) in along[l][..=q].iter().enumerate() {
+                for (j, b) in functions[..=q].iter().enumerate() {
                     let at = (i0 + i) * columns + j0 + j;
                     let w = self.weights.as_ref().map_or(1.0, |w| w[at]);
                     line += *b * homogeneous(self.control_points[at], w);
                 }
-                for k in 0..=du.min(order - l) {
-                    form[k][l] += across[k][i] * line;
+                for (sums, functions) in form.iter_mut().zip(&across).take(du.min(order - l) + 1) {
+                    sums[l] += functions[i] * line;
                 }
             }
         }

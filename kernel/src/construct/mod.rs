@@ -1,0 +1,17 @@
+//! Constructions: surfaces from curves, and curves and surfaces through points.
+
+mod extrusion;
+mod interpolate;
+mod revolution;
+mod ruled;
+mod spacing;
+mod through_grid;
+mod through_points;
+
+pub use extrusion::extrusion;
+pub use interpolate::InvalidInterpolation;
+pub use revolution::revolution;
+pub use ruled::ruled;
+pub use spacing::Spacing;
+pub use through_grid::surface_through;
+pub use through_points::curve_through;
