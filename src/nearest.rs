@@ -37,7 +37,7 @@ impl Model {
         ps: &[DVec3],
         options: &QueryOptions,
     ) -> Vec<Result<Option<(EntityId, FootPoint)>, QueryError>> {
-        batch::answers(ps, |index, p, scratch| {
+        batch::answers(ps, Scratch::default, |scratch, index, p| {
             let query = Query::new(*p, *options).map_err(|error| at_index(error, index))?;
             Ok(self.nearest_to(&query, scratch))
         })
@@ -52,68 +52,39 @@ impl Model {
     }
 
     fn nearest_to(&self, query: &Query, scratch: &mut Scratch) -> Option<(EntityId, FootPoint)> {
-        let p = query.point;
         let tree = &self.overview().tree;
-        let mut search = Search { query, best: None, lower_bound: f64::INFINITY };
-        let (first, _) = tree.descend(p)?;
-        search.visit(self, first, scratch);
+        let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
+        // An entity is asked without a limit: its answer then bounds its distance, also where it is too far.
+        let query = Query { options: QueryOptions { max_distance: None, ..query.options }, ..*query };
+        let (first, _) = tree.descend(query.point)?;
+        let mut found = self.visit(first, &query, scratch);
         let mut candidates: Vec<Candidate> = Vec::new();
-        tree.nearer_than(p, square_above(search.limit()), &mut candidates);
+        tree.nearer_than(query.point, square_above(found.1.distance), &mut candidates);
         candidates.retain(|candidate| candidate.item != first);
-        let rank = |c: &Candidate| (c.distance_squared, self.entities[c.item as usize].id);
-        candidates.sort_unstable_by(|a, b| {
-            let ((a, of_a), (b, of_b)) = (rank(a), rank(b));
-            a.total_cmp(&b).then(of_a.cmp(&of_b))
-        });
+        let id = |candidate: &Candidate| self.entities[candidate.item as usize].id;
+        candidates.sort_unstable_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared).then(id(a).cmp(&id(b))));
         for candidate in candidates {
-            if candidate.distance_squared >= square_above(search.limit()) {
+            if candidate.distance_squared >= square_above(found.1.distance) {
                 break; // the others are farther still
             }
-            search.visit(self, candidate.item, scratch);
-        }
-        let lower_bound = search.lower_bound;
-        search.best.map(|(id, foot)| (id, FootPoint { lower_bound: foot.lower_bound.min(lower_bound), ..foot }))
-    }
-}
-
-/// A query to the whole model under way.
-struct Search<'a> {
-    query: &'a Query,
-    best: Option<(EntityId, FootPoint)>,
-    /// Proven for all entities that were looked at.
-    lower_bound: f64,
-}
-
-impl Search<'_> {
-    /// The distance beyond which nothing is wanted.
-    fn limit(&self) -> f64 {
-        let best = self.best.map_or(f64::INFINITY, |(_, foot)| foot.distance);
-        self.query.options.max_distance.unwrap_or(f64::INFINITY).min(best)
-    }
-
-    fn visit(&mut self, model: &Model, item: u32, scratch: &mut Scratch) {
-        let entity = &model.entities[item as usize];
-        let limit = self.limit();
-        let options = QueryOptions { max_distance: limit.is_finite().then_some(limit), ..self.query.options };
-        let query = Query { options, ..*self.query };
-        match entity.prepared().project(&query, scratch) {
-            Some(foot) => {
-                self.lower_bound = self.lower_bound.min(foot.lower_bound);
-                let better = self.best.is_none_or(|(id, best)| (foot.distance, entity.id) < (best.distance, id));
-                if better {
-                    self.best = Some((entity.id, foot));
-                }
+            let other = self.visit(candidate.item, &query, scratch);
+            let lower_bound = found.1.lower_bound.min(other.1.lower_bound);
+            if (other.1.distance, other.0) < (found.1.distance, found.0) {
+                found = other;
             }
-            None => {
-                // Nothing of it is nearer than the limit, but for the gap within which that is proven.
-                let gap = options.gap.unwrap_or_else(|| 1e-9 * entity.definition.size());
-                self.lower_bound = self.lower_bound.min((limit - gap).max(0.0));
-            }
+            found.1.lower_bound = lower_bound;
         }
+        (found.1.distance <= limit).then_some(found)
+    }
+
+    fn visit(&self, item: u32, query: &Query, scratch: &mut Scratch) -> (EntityId, FootPoint) {
+        let entity = &self.entities[item as usize];
+        let foot = entity.prepared().project(query, scratch);
+        (entity.id, foot.expect("an entity has a nearest point where no distance is too far"))
     }
 }
 
-/// At least the square of `distance`, and above it: boxes exactly that far are met too.
+/// Above the square of `distance` by more than rounding: a box that is not below it is at least `distance` away.
 fn square_above(distance: f64) -> f64 {
     distance * distance * (1.0 + 8.0 * f64::EPSILON) + f64::MIN_POSITIVE
 }

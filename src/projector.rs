@@ -1,20 +1,23 @@
 //! Queries to one entity by one thread.
 
 use glam::DVec3;
-use perpend_projection::{FootPoint, Prepared, Query, QueryError, QueryOptions, Scratch, Ties};
+use perpend_projection::{FootPoint, Prepared, Query, QueryError, QueryOptions, Scratch, Statistics, Ties};
 
-/// An entity made ready, with the working memory of queries: for loops that ask one entity many times.
+/// An entity made ready, with working memory and the last foot: for loops that ask one entity many times, best with each
+/// point near the one before it.
 ///
 /// The answers are those of [`Model::project_with`](crate::Model::project_with), bit for bit.
 #[derive(Debug)]
 pub struct Projector<'a> {
     prepared: &'a Prepared,
     scratch: Scratch,
+    /// The last foot: it spares the next query the pieces that are farther away.
+    hint: Option<DVec3>,
 }
 
 impl<'a> Projector<'a> {
     pub(crate) fn new(prepared: &'a Prepared) -> Self {
-        Self { prepared, scratch: Scratch::default() }
+        Self { prepared, scratch: Scratch::default(), hint: None }
     }
 
     /// The nearest point to `p`; none where the entity is beyond `max_distance`.
@@ -23,7 +26,10 @@ impl<'a> Projector<'a> {
     ///
     /// A coordinate that is no finite number or beyond 1e150; an option without meaning.
     pub fn project(&mut self, p: DVec3, options: &QueryOptions) -> Result<Option<FootPoint>, QueryError> {
-        Ok(self.prepared.project(&Query::new(p, *options)?, &mut self.scratch))
+        let query = Query::new(p, *options)?;
+        let foot = self.prepared.project_near(&query, self.hint, &mut self.scratch);
+        self.hint = foot.map(|foot| foot.point).or(self.hint);
+        Ok(foot)
     }
 
     /// All nearest points to `p`; none where the entity is beyond `max_distance`.
@@ -33,5 +39,11 @@ impl<'a> Projector<'a> {
     /// As [`project`](Self::project).
     pub fn project_ties(&mut self, p: DVec3, options: &QueryOptions) -> Result<Option<Ties>, QueryError> {
         Ok(self.prepared.project_ties(&Query::new(p, *options)?, &mut self.scratch))
+    }
+
+    /// What the queries so far have cost.
+    #[must_use]
+    pub fn statistics(&self) -> Statistics {
+        self.scratch.statistics
     }
 }

@@ -5,7 +5,6 @@ use perpend_kernel::EntityId;
 use perpend_projection::{FootPoint, Prepared, Query, QueryError, QueryOptions, Scratch, Ties};
 
 use crate::batch;
-use crate::entity::Entity;
 use crate::model::Model;
 use crate::projector::Projector;
 
@@ -45,11 +44,15 @@ impl Model {
         ps: &[DVec3],
         options: &QueryOptions,
     ) -> Vec<Result<Option<FootPoint>, QueryError>> {
-        let prepared = self.prepared(id);
-        batch::answers(ps, |index, p, scratch| {
-            let query = Query::new(*p, *options).map_err(|error| at_index(error, index));
-            Ok(prepared.clone()?.project(&query?, scratch))
-        })
+        let prepared = match self.prepared(id) {
+            Ok(prepared) => prepared,
+            Err(error) => return vec![Err(error); ps.len()],
+        };
+        batch::answers(
+            ps,
+            || Projector::new(prepared),
+            |projector, index, p| projector.project(*p, options).map_err(|error| at_index(error, index)),
+        )
     }
 
     /// All points of an entity that are nearest to `p` within the gap; none where it is beyond `max_distance`.
@@ -72,7 +75,7 @@ impl Model {
     }
 
     fn prepared(&self, id: EntityId) -> Result<&Prepared, QueryError> {
-        self.entity(id).map(|entity: &Entity| entity.prepared().as_ref()).ok_or(QueryError::UnknownEntity { id })
+        self.entity(id).map(|entity| entity.prepared().as_ref()).ok_or(QueryError::UnknownEntity { id })
     }
 }
 
