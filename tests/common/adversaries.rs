@@ -394,7 +394,7 @@ fn many_span_curve(random: &mut Random) -> Made {
 
 /// Runs of equal control points, at the ends or inside; nearly equal ones by chance.
 fn coincident_curve(random: &mut Random) -> Made {
-    let (degree, extra) = (random.count(2, 5), random.count(1, 5));
+    let (degree, extra) = (random.count(2, 5), random.count(2, 5));
     let mut points = path(random, degree + extra);
     let run = random.count(1, degree);
     let start = random.pick(&[0, points.len() - 1 - run, random.clone().count(0, points.len() - 1 - run)]);
