@@ -210,9 +210,10 @@ impl Proof<'_> {
     }
 
     /// Whether `tau` fell so far that the form of a rational leaf asks for more than is needed. What is convex or dominated
-    /// at one `tau` need not be at another, since the weights vary.
+    /// at one `tau` need not be at another, since the weights vary. (A form that asks for more still proves what it proves: when the
+    /// work is spent, it is kept.)
     fn is_stale(&self, state: &State) -> bool {
-        self.part.leaf.rational && state.tau() < self.formed - 0.5 * state.gap
+        self.part.leaf.rational && state.work > 0 && state.tau() < self.formed - 0.5 * state.gap
     }
 
     /// The `tau` that the form speaks of.

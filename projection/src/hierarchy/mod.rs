@@ -171,7 +171,7 @@ impl Hierarchy {
         State {
             point,
             gap: if left < 0.5 * asked { left.max(reachable) } else { left },
-            limit: query.options.max_distance.map_or(f64::INFINITY, |d| d * self.frame.scale),
+            limit: query.options.max_distance.map_or(f64::INFINITY, |d| d * self.frame.scale + asked),
             best,
             best_jet: Some(found.jet),
             met: smallvec::smallvec![best],
@@ -267,13 +267,17 @@ impl Hierarchy {
 
     /// Whether a foot that was met, once polished, is as near as the best one and elsewhere.
     ///
-    /// Two such feet are connected where the straight way between their parameters stays as near to rounding; where it dips below
-    /// both, they are one foot on its way to convergence; else they are apart.
+    /// The straight way between the parameters of two such feet tells: where it leads farther away than both, they are apart; where
+    /// the best one is flat and the whole way is as near to rounding, they belong to a continuum. Else the one that was met is on its way to the
+    /// best one, or was kept from it by the border of its leaf.
     fn tie(&self, state: &mut State, best: &Foot, jet: &Jet, coincidence: f64) -> Tie {
         let mut met = std::mem::take(&mut state.met);
         let near = best.distance + state.gap;
-        met.retain(|foot| foot.distance <= near && foot.point.distance(best.point) > coincidence);
-        if self.is_flat(best, jet, state) {
+        // two feet of one leaf that are this close in its parameters are one on its way to convergence
+        let close = |foot: &Foot| foot.leaf == best.leaf && (foot.s - best.s).abs().max((foot.t - best.t).abs()) < 1e-2;
+        met.retain(|foot| foot.distance <= near && foot.point.distance(best.point) > coincidence && !close(foot));
+        let flat = self.is_flat(best, jet, state);
+        if flat {
             met.extend(self.sides(best, state));
         }
         let mut tie = Tie::None;
@@ -286,25 +290,31 @@ impl Hierarchy {
             let [a, b] = [best, &foot].map(|foot| self.leaves[foot.leaf as usize].parameters(foot.s, foot.t));
             let between = [0.25, 0.5, 0.75]
                 .map(|share| self.distance_at(state.point, a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1)));
-            let (low, high) = between.iter().fold((f64::MAX, 0.0_f64), |(low, high), d| (low.min(*d), high.max(*d)));
-            if high <= best.distance.max(foot.distance) + noise && low >= best.distance - noise {
-                return Tie::Connected;
-            }
-            if high > foot.distance + noise {
+            if between.iter().any(|d| *d > foot.distance + noise) {
                 tie = Tie::Apart;
+            } else if flat && between.iter().all(|d| (d - best.distance).abs() <= noise) {
+                return Tie::Connected;
             }
         }
         tie
     }
 
     /// Whether the distance is flat to second order at a foot: then others may be as near beside it.
+    ///
+    /// A direction in which the foot is held at a border, the distance falling beyond, is not flat.
     fn is_flat(&self, foot: &Foot, jet: &Jet, state: &State) -> bool {
         let leaf = &self.leaves[foot.leaf as usize];
         let c = jet.cartesian();
         let r = c.p - (state.point - leaf.origin);
         let (a, b) = (c.ps.length_squared(), c.pt.length_squared());
+        let held = |derivative: DVec3, square: f64| r.dot(derivative).abs() > 1e-9 * square.sqrt() * foot.distance;
         let (hss, hst, htt) = (a + r.dot(c.pss), c.ps.dot(c.pt) + r.dot(c.pst), b + r.dot(c.ptt));
-        if leaf.degree.1 == 0 { hss <= 1e-9 * a } else { hss * htt - hst * hst <= 1e-9 * a * b }
+        match (held(c.ps, a), leaf.degree.1 == 0 || held(c.pt, b)) {
+            (true, true) => false,
+            (true, false) => htt <= 1e-9 * b,
+            (false, true) => hss <= 1e-9 * a,
+            (false, false) => hss * htt - hst * hst <= 1e-9 * a * b,
+        }
     }
 
     /// Points to compare a flat foot with: on the sides of its leaf, straight across.

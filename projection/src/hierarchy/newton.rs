@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use super::ROUNDING;
 use super::jet::Jet;
 use super::leaf::Leaf;
 use crate::statistics::Statistics;
@@ -70,9 +71,10 @@ pub(super) fn search(
         let squared = r.length_squared();
         match &best {
             Some((least, found)) if squared >= *least => {
-                // halve back towards the best point
+                // halve back towards the best point, unless there is nothing left to gain beside rounding
                 let (half_s, half_t) = (0.5 * (s + found.s), 0.5 * (t + found.t));
-                if (half_s - s).abs() + (half_t - t).abs() < 1e-15 || squared - least < decrease {
+                let worse = squared - least;
+                if (half_s - s).abs() + (half_t - t).abs() < 1e-15 || worse <= decrease.max(8.0 * ROUNDING * least) {
                     break;
                 }
                 (s, t) = (half_s, half_t);
