@@ -38,6 +38,7 @@ impl NurbsSurface {
 /// The knots with their domain mapped to `[first, last]`.
 pub(crate) fn mapped(old: &KnotVector, first: f64, last: f64, along: Along) -> Result<KnotVector, InvalidDefinition> {
     let (a, b) = old.domain();
+    let scale = (last - first) / (b - a);
     let map = |knot: &f64| {
         if *knot == a {
             first
@@ -45,7 +46,7 @@ pub(crate) fn mapped(old: &KnotVector, first: f64, last: f64, along: Along) -> R
             last
         } else {
             // every step is monotone in the knot, rounding included
-            (first + (knot - a) / (b - a) * (last - first)).min(last)
+            (first + (knot - a) * scale).min(last)
         }
     };
     KnotVector::new(old.degree(), old.as_slice().iter().map(map).collect(), old.point_count(), along)
