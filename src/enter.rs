@@ -59,7 +59,10 @@ pub(crate) fn note(entry: Entry, definition: &Definition, record: &mut Option<Re
             let value = Cleaning::Clamped { direction };
             let item = Item { value, basis: Basis::Defined, tolerance: 0.0, of: definition.fingerprint() };
             let representation = record.get_or_insert_default().representation.get_or_insert_default();
-            representation.cleaning.get_or_insert_default().push(item);
+            let cleaning = representation.cleaning.get_or_insert_default();
+            if !cleaning.contains(&item) {
+                cleaning.push(item);
+            }
         }
     }
 }

@@ -8,6 +8,7 @@ use perpend_projection::Prepared;
 use serde::{Deserialize, Serialize};
 
 use crate::enter;
+use crate::written::{Writing, Written};
 
 /// An entity: its identity, its definition, what is known of it, and what queries need of it.
 ///
@@ -30,7 +31,7 @@ pub(crate) struct EntityData {
     pub(crate) id: EntityId,
     #[serde(default)]
     pub(crate) name: String,
-    pub(crate) definition: DefinitionData,
+    pub(crate) definition: Written,
     #[serde(default)]
     pub(crate) knowledge: Option<Record>,
 }
@@ -108,7 +109,7 @@ impl TryFrom<EntityData> for Entity {
     type Error = EntityError;
 
     fn try_from(data: EntityData) -> Result<Self, EntityError> {
-        let (definition, entry) = data.definition.enter()?;
+        let (definition, entry) = DefinitionData::from(data.definition).enter()?;
         let mut record = data.knowledge;
         if let Some(record) = &record {
             record.validate()?;
@@ -124,7 +125,7 @@ impl Serialize for Entity {
         let mut s = serializer.serialize_struct("Entity", 4)?;
         s.serialize_field("id", &self.id)?;
         s.serialize_field("name", &self.name)?;
-        s.serialize_field("definition", self.definition.as_ref())?;
+        s.serialize_field("definition", &Writing(&self.definition))?;
         s.serialize_field("knowledge", &self.record)?;
         s.end()
     }

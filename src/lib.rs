@@ -32,6 +32,7 @@ mod nearest;
 mod projector;
 mod query;
 mod units;
+mod written;
 
 pub use edit::EditError;
 pub use enter::IntoDefinition;

@@ -36,6 +36,7 @@ fn bare<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<u64>
 
 /// Reads and validates a model.
 pub(super) fn read(text: &str) -> Result<Model, ModelError> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text); // a byte order mark
     let outline = Outline::of(text);
     check_format(text, &outline)?;
     let data: ModelData = ron::from_str(text).map_err(|error| syntax::explain(text, &outline, &error))?;
@@ -84,12 +85,13 @@ fn check_format(text: &str, outline: &Outline) -> Result<(), ModelError> {
     if outline.is_empty {
         return Err(at(0, InvalidModel::Empty));
     }
-    match &outline.format {
-        Some(range) if text[range.clone()].parse() != Ok(FORMAT) => {
-            Err(at(range.start, InvalidModel::Format { found: text[range.clone()].to_owned() }))
-        }
-        _ => Ok(()),
+    let Some(range) = &outline.format else { return Ok(()) };
+    let found = &text[range.clone()];
+    let is_number = found.bytes().all(|byte| byte.is_ascii_digit() || b".+-_".contains(&byte));
+    if is_number && found.parse() != Ok(FORMAT) {
+        return Err(at(range.start, InvalidModel::Format { found: found.to_owned() }));
     }
+    Ok(())
 }
 
 /// Where in the text the entities stand.

@@ -14,7 +14,6 @@ use ron::ser::PrettyConfig;
 use crate::entity::Entity;
 use crate::file::data::FORMAT;
 use crate::model::Model;
-use crate::units::Units;
 
 /// Lists are broken so that lines stay within this many characters where they can.
 const WIDTH: usize = 120;
@@ -23,9 +22,7 @@ const WIDTH: usize = 120;
 pub(super) fn write(model: &Model, out: impl Write) -> io::Result<()> {
     let mut out = io::BufWriter::new(out);
     writeln!(out, "Model(\n    format: {FORMAT},")?;
-    if model.units() != Units::default() {
-        writeln!(out, "    units: {:?},", model.units())?;
-    }
+    writeln!(out, "    units: {:?},", model.units())?;
     writeln!(out, "    next_id: {},", model.next_id())?;
     if model.is_empty() {
         writeln!(out, "    entities: [],")?;

@@ -83,15 +83,15 @@ impl Outline {
                         name.as_ref().is_some_and(|name| &text[name.clone()] == expected)
                     };
                     if depth == 1 && is(&field, "format") {
-                        outline.format = Some(range.clone());
+                        outline.format.get_or_insert(range.clone());
                     } else if depth == 1 && is(&field, "next_id") {
-                        outline.next_id = Some(range.clone());
+                        outline.next_id.get_or_insert(range.clone());
                     } else if depth == 3
                         && in_entities
                         && is(&field_of_entity, "id")
                         && let Some(element) = &mut element
                     {
-                        element.id = Some(range.clone());
+                        element.id.get_or_insert(range.clone());
                     }
                     last_word = Some(range.clone());
                 }
@@ -100,7 +100,10 @@ impl Outline {
                 field_of_entity = None;
             }
         }
-        outline.entities.extend(element);
+        // one that does not end reaches past the end of the text
+        outline
+            .entities
+            .extend(element.map(|element| Element { range: element.range.start..text.len() + 1, ..element }));
         outline.is_cut_off = depth > 0 || tokens.is_cut_off;
         outline
     }
@@ -190,8 +193,6 @@ impl Tokens<'_> {
                 self.skip_block_comment();
             } else if rest.first().is_some_and(u8::is_ascii_whitespace) {
                 self.at += 1;
-            } else if rest.starts_with("\u{feff}".as_bytes()) {
-                self.at += 3;
             } else {
                 return;
             }

@@ -18,15 +18,15 @@ pub(super) fn explain(text: &str, outline: &Outline, error: &SpannedError) -> Mo
         column: Some(at.col),
         index,
         entity: id.map(EntityId::new),
-        problem: problem(text, outline, offset, &error.code),
+        problem: problem(text, outline, offset, error),
     }
 }
 
-fn problem(text: &str, outline: &Outline, offset: usize, error: &Error) -> InvalidModel {
-    if outline.is_cut_off && text[offset..].trim().is_empty() {
+fn problem(text: &str, outline: &Outline, offset: usize, error: &SpannedError) -> InvalidModel {
+    if outline.is_cut_off && meets_end(text, offset, error) {
         return InvalidModel::CutOff;
     }
-    let message = match error {
+    let message = match &error.code {
         Error::NoSuchStructField { expected, found, outer } => {
             format!("{} has no field `{found}`; its fields are {}", name(outer.as_deref()), list(expected))
         }
@@ -37,9 +37,9 @@ fn problem(text: &str, outline: &Outline, offset: usize, error: &Error) -> Inval
             format!("{} has its field `{field}` twice: remove one", name(outer.as_deref()))
         }
         Error::NoSuchEnumVariant { expected, found, outer } => {
-            format!("there is no {} `{found}`; there are {}", outer.as_deref().unwrap_or("variant"), list(expected))
+            format!("`{found}` is no {}; there are {}", outer.as_deref().unwrap_or("variant"), list(expected))
         }
-        Error::ExceededRecursionLimit => "brackets nest deeper than 128; a model needs about ten".to_owned(),
+        Error::ExpectedOption => "expected `None` or a value in `Some(…)`".to_owned(),
         Error::IntegerOutOfBounds => "the number is outside the range of its field: correct it".to_owned(),
         Error::TrailingCharacters => "text after the end of the model: remove it; a file holds one model".to_owned(),
         other => {
@@ -50,6 +50,14 @@ fn problem(text: &str, outline: &Outline, offset: usize, error: &Error) -> Inval
         }
     };
     InvalidModel::Syntax { message }
+}
+
+/// Whether an error comes from the end of the text: nothing, or one word that was cut short, is left.
+fn meets_end(text: &str, offset: usize, error: &SpannedError) -> bool {
+    let is_unfinished = matches!(error.code, Error::Eof | Error::ExpectedStringEnd | Error::UnclosedBlockComment);
+    let ends_there = offset_at(text, error.span.end.line, error.span.end.col) >= text.trim_end().len();
+    let is_word = || !text[offset..].trim().contains(|c: char| c.is_whitespace() || "()[]{},:\"".contains(c));
+    is_unfinished || ends_there || is_word()
 }
 
 /// What a struct is called in messages.
