@@ -36,12 +36,20 @@ pub(crate) fn functions(knots: &KnotVector, span: usize, u: f64) -> [f64; ROOM] 
 ///
 /// The functions of degree `p - k` are differentiated `k` times by The NURBS Book, equation 2.7: as accurate as its algorithm
 /// A2.3 and shorter. The error is a few ε of the largest that the derivatives become on the span.
-pub(crate) fn derivatives(knots: &KnotVector, span: usize, u: f64, order: usize, table: &mut [[f64; ROOM]; ROOM]) {
+///
+/// `R` is the room, more than the degree: small tables for low degrees, since clearing the largest takes longer than filling it.
+pub(crate) fn derivatives<const R: usize>(
+    knots: &KnotVector,
+    span: usize,
+    u: f64,
+    order: usize,
+    table: &mut [[f64; R]; R],
+) {
     let (p, t) = (knots.degree(), knots.as_slice());
     debug_assert!(order <= p, "derivatives beyond the degree vanish");
     // column j of the upper triangle: the functions of degree j; row j of the lower: the widths that degree j - 1 extends over
-    let mut ndu = [[0.0; ROOM]; ROOM];
-    let (mut left, mut right) = ([0.0; ROOM], [0.0; ROOM]);
+    let mut ndu = [[0.0; R]; R];
+    let (mut left, mut right) = ([0.0; R], [0.0; R]);
     ndu[0][0] = 1.0;
     for j in 1..=p {
         left[j] = u - t[span + 1 - j];
@@ -70,7 +78,7 @@ pub(crate) fn derivatives(knots: &KnotVector, span: usize, u: f64, order: usize,
         }
     }
     if let Some(only) = interpolated(knots, span, u) {
-        table[0] = [0.0; ROOM];
+        table[0] = [0.0; R];
         table[0][only] = 1.0;
     }
 }

@@ -191,11 +191,19 @@ impl NurbsCurve {
         if out.is_empty() {
             return;
         }
+        match self.degree() {
+            0..=3 => self.derivatives_with_room::<4>(u, span, out),
+            4..=7 => self.derivatives_with_room::<8>(u, span, out),
+            _ => self.derivatives_with_room::<ROOM>(u, span, out),
+        }
+    }
+
+    fn derivatives_with_room<const R: usize>(&self, u: f64, span: usize, out: &mut [DVec3]) {
         let p = self.degree();
         let order = p.min(out.len() - 1);
-        let mut table = [[0.0; ROOM]; ROOM];
+        let mut table = [[0.0; R]; R];
         basis::derivatives(&self.knots, span, u, order, &mut table);
-        let mut form = [DVec4::ZERO; ROOM];
+        let mut form = [DVec4::ZERO; R];
         for (k, sum) in form.iter_mut().enumerate().take(order + 1) {
             for (i, b) in table[k][..=p].iter().enumerate() {
                 let at = span - p + i;
@@ -241,7 +249,7 @@ pub(crate) fn net(points: &[DVec3], weights: Option<&[f64]>) -> Vec<DVec4> {
 }
 
 /// Largest |coordinate| of a definition: squares of differences stay finite.
-const COORDINATE_LIMIT: f64 = 1e100;
+pub(crate) const COORDINATE_LIMIT: f64 = 1e100;
 
 /// The most control points of one definition.
 pub(crate) const POINT_LIMIT: usize = 10_000_000;

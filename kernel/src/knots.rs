@@ -143,7 +143,7 @@ impl KnotVector {
     /// How often `u` occurs among the knots; 0 where it is none.
     #[must_use]
     pub fn multiplicity(&self, u: f64) -> usize {
-        self.knots.iter().filter(|knot| **knot == u).count()
+        self.knots.partition_point(|knot| *knot <= u) - self.knots.partition_point(|knot| *knot < u)
     }
 }
 

@@ -239,14 +239,24 @@ impl NurbsSurface {
     pub fn derivatives_from(&self, u: f64, v: f64, below: [bool; 2], order: usize, out: &mut [DVec3]) {
         let side = order + 1;
         assert_eq!(out.len(), side * side, "the derivatives of order {order} need {side} * {side} entries");
+        let (p, q) = self.degree();
+        match p.max(q) {
+            0..=3 => self.derivatives_with_room::<4>(u, v, below, order, out),
+            4..=7 => self.derivatives_with_room::<8>(u, v, below, order, out),
+            _ => self.derivatives_with_room::<ROOM>(u, v, below, order, out),
+        }
+    }
+
+    fn derivatives_with_room<const R: usize>(&self, u: f64, v: f64, below: [bool; 2], order: usize, out: &mut [DVec3]) {
+        let side = order + 1;
         let (u, v) = (self.u.clamp(u), self.v.clamp(v));
         let ((p, q), columns) = (self.degree(), self.columns());
         let (i0, j0) = (span_from(&self.u, u, below[0]) - p, span_from(&self.v, v, below[1]) - q);
         let (du, dv) = (p.min(order), q.min(order));
-        let (mut across, mut along) = ([[0.0; ROOM]; ROOM], [[0.0; ROOM]; ROOM]);
+        let (mut across, mut along) = ([[0.0; R]; R], [[0.0; R]; R]);
         basis::derivatives(&self.u, i0 + p, u, du, &mut across);
         basis::derivatives(&self.v, j0 + q, v, dv, &mut along);
-        let mut form = [[DVec4::ZERO; ROOM]; ROOM];
+        let mut form = [[DVec4::ZERO; R]; R];
         for i in 0..=p {
             for (l, functions) in along[..=dv].iter().enumerate() {
                 let mut line = DVec4::ZERO;

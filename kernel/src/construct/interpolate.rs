@@ -4,6 +4,7 @@ use glam::DVec3;
 
 use super::spacing::averaged_knots;
 use crate::basis;
+use crate::curve::COORDINATE_LIMIT;
 use crate::invalid::InvalidDefinition;
 use crate::knots::{KnotVector, MAX_DEGREE};
 
@@ -28,7 +29,9 @@ pub enum InvalidInterpolation {
         point: DVec3,
     },
     /// Two neighbouring points (in a grid: rows or columns) have the same parameter, being equal or too near each other.
-    #[error("points {} and {index} get the same parameter: drop one of them, or space the parameters uniformly", index - 1)]
+    #[error(
+        "point {index} and the one before it get the same parameter: drop one of them, or space the parameters uniformly"
+    )]
     Repeated {
         /// The second of them.
         index: usize,
@@ -60,7 +63,7 @@ pub(super) fn check(count: usize, degree: usize) -> Result<(), InvalidInterpolat
 pub(super) fn check_finite(points: impl Iterator<Item = DVec3>) -> Result<(), InvalidInterpolation> {
     for (index, point) in points.enumerate() {
         // not `>`: a NaN must fail too
-        if !point.abs().cmple(DVec3::splat(1e100)).all() {
+        if !point.abs().cmple(DVec3::splat(COORDINATE_LIMIT)).all() {
             return Err(InvalidInterpolation::BadPoint { index, point });
         }
     }
@@ -84,15 +87,16 @@ impl System {
             return Err(InvalidInterpolation::Repeated { index: before + 1 });
         }
         let (p, count) = (degree, parameters.len());
-        let knots = averaged_knots(p, parameters);
+        let knots = averaged_knots(p, parameters)?;
         let mut rows = vec![vec![0.0; 2 * p + 1]; count];
         for (i, u) in parameters.iter().enumerate() {
             let span = knots.find_span(*u);
-            // column j of row i stands at j - i + p; the span's columns lie within, by Schoenberg and Whitney's condition
-            for (k, value) in basis::functions(&knots, span, *u)[..=p].iter().enumerate() {
-                let place = (span - p + k + p).checked_sub(i).filter(|place| *place <= 2 * p);
-                if let Some(place) = place {
-                    rows[i][place] = *value;
+            let values = basis::functions(&knots, span, *u);
+            for (k, value) in values[..=p].iter().enumerate().filter(|(_, value)| **value != 0.0) {
+                // column j of row i stands at j - i + p; it lies within, by Schoenberg and Whitney's condition
+                match (span + k).checked_sub(i).filter(|place| *place <= 2 * p) {
+                    Some(place) => rows[i][place] = *value,
+                    None => return Err(InvalidInterpolation::Repeated { index: i }),
                 }
             }
         }

@@ -2,6 +2,7 @@
 
 use glam::DVec3;
 
+use crate::invalid::{Along, InvalidDefinition};
 use crate::knots::KnotVector;
 
 /// How the parameters of interpolated points are spread over `[0, 1]`.
@@ -36,10 +37,14 @@ impl Spacing {
 /// The knots of a curve of a degree through points at these parameters: inner knots are averages of `degree` parameters.
 ///
 /// The NURBS Book, equation 9.8; the system of interpolation is then banded and totally positive.
-pub(super) fn averaged_knots(degree: usize, parameters: &[f64]) -> KnotVector {
+///
+/// # Errors
+///
+/// Parameters so near each other that their averages fall together.
+pub(super) fn averaged_knots(degree: usize, parameters: &[f64]) -> Result<KnotVector, InvalidDefinition> {
     let mut knots = vec![0.0; degree + 1];
     let inner = 1..parameters.len() - degree;
     knots.extend(inner.map(|j| parameters[j..j + degree].iter().sum::<f64>() / degree as f64));
     knots.extend(vec![1.0; degree + 1]);
-    KnotVector::trusted(degree, knots)
+    KnotVector::new(degree, knots, parameters.len(), Along::Curve)
 }

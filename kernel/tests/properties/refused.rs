@@ -86,7 +86,10 @@ fn bad_shapes_are_named() {
 #[test]
 fn bad_constructions_are_named() {
     let points = [DVec3::ZERO, DVec3::X, DVec3::X, DVec3::Y];
-    assert!(said(curve_through(&points, 3, Spacing::ChordLength)).contains("points 1 and 2 get the same parameter"));
+    assert!(
+        said(curve_through(&points, 3, Spacing::ChordLength))
+            .contains("point 2 and the one before it get the same parameter")
+    );
     assert!(said(curve_through(&points, 4, Spacing::Uniform)).contains("4 points and degree 4"));
     assert!(said(curve_through(&points, 0, Spacing::Uniform)).contains("degree 0"));
     assert!(said(curve_through(&[DVec3::ZERO, DVec3::NAN], 1, Spacing::Uniform)).contains("point 1 is [NaN"));
