@@ -175,3 +175,19 @@ fn many_points_and_a_high_degree_are_passed() {
         }
     }
 }
+
+#[test]
+fn knots_that_agree_but_for_the_rounding_of_the_mapping_count_once() {
+    let through = |knots: &dyn Fn(i32) -> f64, z: f64| {
+        let mut all = vec![knots(0)];
+        all.extend((0..=10).map(knots));
+        all.push(knots(10));
+        let points = (0..11).map(|i| DVec3::new(f64::from(i), f64::from(i * i % 3), z)).collect();
+        NurbsCurve::new(1, all, points, None).expect("valid")
+    };
+    // tenths are rounded, sevenths of a shifted domain otherwise
+    let (a, b) = (through(&|k| f64::from(k) / 10.0, 0.0), through(&|k| 0.3 + 0.7 * f64::from(k), 1.0));
+    let surface = ruled(&a, &b).expect("compatible");
+    assert_eq!((surface.rows(), surface.columns()), (11, 2));
+    assert_eq!(surface.knots(Direction::U), a.knots());
+}
