@@ -83,9 +83,13 @@ impl Row {
     }
 }
 
-/// The rows of a CSV file with a header; columns that hold no number are left out.
+/// The rows of a CSV file.
 pub fn rows(file: &Path) -> Vec<Row> {
-    let text = std::fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+    parse(&std::fs::read_to_string(file).unwrap_or_else(|e| panic!("{}: {e}", file.display())))
+}
+
+/// The rows of a CSV text with a header; columns that hold no number are left out.
+pub fn parse(text: &str) -> Vec<Row> {
     let mut lines = text.lines();
     let header: Vec<&str> = lines.next().expect("a header").split(',').collect();
     let row = |line: &str| {

@@ -11,3 +11,4 @@ pub mod oracle;
 pub mod points;
 pub mod random;
 pub mod shape;
+pub mod strategies;
