@@ -32,7 +32,7 @@ impl QueryOptions {
         let lengths = [("gap", self.gap), ("max_distance", self.max_distance), ("coincidence", self.coincidence)];
         for (option, value) in lengths {
             if let Some(value) = value
-                && !(value >= 0.0)
+                && (value.is_nan() || value < 0.0)
             {
                 return Err(QueryError::InvalidOption { option, value });
             }

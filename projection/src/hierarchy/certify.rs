@@ -465,3 +465,91 @@ fn split(cell: Cell, memory: &mut Memory) {
     memory.cells.push(first);
     memory.cells.push(second);
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::double_double::{DoubleDouble, Random};
+    use super::super::piece::Piece;
+    use super::*;
+    use perpend_kernel::binomial;
+
+    /// Bernstein polynomials and their first derivatives in double-double.
+    fn basis(n: usize, x: f64) -> Vec<[DoubleDouble; 2]> {
+        let number = DoubleDouble::from;
+        let power = |base: DoubleDouble, k: usize| (0..k).fold(number(1.0), |product, _| product * base);
+        let (x, y) = (number(x), number(1.0) - number(x));
+        let value = |n: usize, i: usize| number(binomial(n, i)) * power(x, i) * power(y, n - i);
+        (0..=n)
+            .map(|i| {
+                let above = if i >= 1 { value(n - 1, i - 1) } else { number(0.0) };
+                let below = if n >= 1 && i < n { value(n - 1, i) } else { number(0.0) };
+                [value(n, i), number(n as f64) * (above - below)]
+            })
+            .collect()
+    }
+
+    /// `G` and its two derivatives at `(s, t)`, in double-double from the leaf's net.
+    fn exact(leaf: &Leaf, x: DVec3, tau: f64, s: f64, t: f64) -> [f64; 3] {
+        let (p, q) = leaf.degree;
+        let number = DoubleDouble::from;
+        let (bs, bt) = (basis(p, s), basis(q, t));
+        // the value and both derivatives of A - x w, and of w as a fourth coordinate
+        let mut jets = [[number(0.0); 4]; 3];
+        for (e, h) in leaf.net.iter().enumerate() {
+            let (i, j) = (e / (q + 1), e % (q + 1));
+            let shares = [bs[i][0] * bt[j][0], bs[i][1] * bt[j][0], bs[i][0] * bt[j][1]];
+            for (jet, share) in jets.iter_mut().zip(shares) {
+                for k in 0..3 {
+                    jet[k] = jet[k] + share * (number(h[k]) - number(x[k]) * number(h.w));
+                }
+                jet[3] = jet[3] + share * number(h.w);
+            }
+        }
+        let square = number(tau) * number(tau);
+        let product = |a: &[DoubleDouble; 4], b: &[DoubleDouble; 4]| {
+            (0..3).fold(number(0.0), |sum, k| sum + a[k] * b[k]) - square * a[3] * b[3]
+        };
+        let value = product(&jets[0], &jets[0]).to_f64();
+        let [ds, dt] = [1, 2].map(|k| (number(2.0) * product(&jets[0], &jets[k])).to_f64());
+        [value, ds, dt]
+    }
+
+    /// The value that the convexity test starts from, and its gradient, each within its own bound; near the surface too,
+    /// where the gradient's error does not fall with the distance.
+    #[test]
+    fn evaluated_values_and_gradients_err_within_their_bounds() {
+        let mut random = Random(9);
+        let (mut worst_value, mut worst_gradient) = (0.0_f64, 0.0_f64);
+        for round in 0..2000 {
+            let degree = [(1, 0), (3, 0), (9, 0), (25, 0), (1, 1), (3, 3), (2, 5), (9, 9)][round % 8];
+            let rational = round % 3 > 0;
+            let count = (degree.0 + 1) * (degree.1 + 1);
+            let net = (0..count)
+                .map(|_| {
+                    let weight = if rational { 10.0_f64.powf(random.between(-3.0, 0.0)) } else { 1.0 };
+                    (random.point() * weight).extend(weight)
+                })
+                .collect();
+            let leaf = Leaf::new(Piece { degree, net, u: (0.0, 1.0), v: (0.0, 1.0) }, rational);
+            let (s, t) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+            let jet = leaf.jet(s, t);
+            let x = jet.cartesian().p + random.point() * 10.0_f64.powf(random.between(-12.0, 2.0));
+            let d = jet.cartesian().p.distance(x);
+            let tau = d * random.between(0.9, 1.0);
+            let exact = exact(&leaf, x, tau, s, t);
+            let w = jet.p.w;
+            let q = jet.p.truncate() - x * w;
+            let value = (d - tau) * (d + tau) * w * w;
+            worst_value = worst_value.max((value - exact[0]).abs() / value_error(&leaf, d));
+            let derivatives = [(jet.ps, degree.0, exact[1]), (jet.pt, degree.1, exact[2])];
+            for (h, n, exact) in derivatives.into_iter().filter(|(_, n, _)| *n > 0) {
+                let direction = h.truncate() - x * h.w;
+                let slope = 2.0 * q.dot(direction) - 2.0 * tau * tau * w * h.w;
+                let error = gradient_error(&leaf, d, tau, direction, h.w, n);
+                worst_gradient = worst_gradient.max((slope - exact).abs() / error);
+            }
+        }
+        assert!(worst_value < 1.0 && worst_gradient < 1.0, "{worst_value} {worst_gradient}");
+        assert!(worst_value > 1e-4 && worst_gradient > 1e-4, "idle bounds: {worst_value} {worst_gradient}");
+    }
+}

@@ -61,7 +61,7 @@ fn by_intervals(patch: Patch<'_>) -> Option<Curvature> {
     let t = along_t(patch)?.t;
     let mixed = (net::largest_mixed(g, n + 1) + 4.0 * rounding) * (m * n) as f64 / (extent.0 * extent.1);
     let rho = mixed / (s * t).sqrt();
-    (rho <= CORRELATED).then(|| Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
+    (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
 }
 
 /// The Hessian as a Bernstein form with 2×2 matrices for coefficients.

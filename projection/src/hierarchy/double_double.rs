@@ -70,6 +70,18 @@ impl Div<f64> for DoubleDouble {
     }
 }
 
+impl Div for DoubleDouble {
+    type Output = Self;
+
+    fn div(self, by: Self) -> Self {
+        let first = Self(self.0 / by.0, 0.0);
+        let rest = self - first * by;
+        let second = Self(rest.0 / by.0, 0.0);
+        let rest = rest - second * by;
+        first + second + Self(rest.0 / by.0, 0.0)
+    }
+}
+
 /// A small generator of reproducible random numbers (xorshift).
 pub(super) struct Random(pub u64);
 
@@ -96,5 +108,7 @@ fn thirds_add_up_to_thirty_digits() {
     let third = DoubleDouble::from(1.0) / 3.0;
     let one = third + third + third;
     assert!((one - DoubleDouble::from(1.0)).to_f64().abs() < 1e-31);
+    let seventh = DoubleDouble::from(1.0) / DoubleDouble::from(7.0);
+    assert!((seventh * DoubleDouble::from(7.0) - DoubleDouble::from(1.0)).to_f64().abs() < 1e-31);
     assert!((third * DoubleDouble::from(3.0) - DoubleDouble::from(1.0)).to_f64().abs() < 1e-31);
 }

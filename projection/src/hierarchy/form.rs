@@ -188,7 +188,7 @@ mod tests {
             for _ in 0..8 {
                 let (_, largest) = net::extremes(&found);
                 let (mut high, mut exact_high) = (found.clone(), expected.clone());
-                if n == 0 || random.next() % 2 == 0 {
+                if n == 0 || random.next().is_multiple_of(2) {
                     net::halve_down(&mut found, &mut high, m, n + 1);
                     halve(&mut expected, &mut exact_high, (0..=n).map(|j| (j, n + 1)), m);
                     bound += m as f64 * ROUNDING * largest;
@@ -197,7 +197,7 @@ mod tests {
                     halve(&mut expected, &mut exact_high, (0..=m).map(|i| (i * (n + 1), 1)), n);
                     bound += n as f64 * ROUNDING * largest;
                 }
-                if random.next() % 2 == 0 {
+                if random.next().is_multiple_of(2) {
                     (found, expected) = (high, exact_high);
                 }
             }
