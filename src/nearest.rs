@@ -25,7 +25,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// A coordinate that is no finite number or beyond 1e150; an option without meaning.
+    /// A coordinate that is no finite number or beyond 1e75; an option without meaning.
     pub fn nearest(&self, p: DVec3, options: &QueryOptions) -> Result<Option<(EntityId, FootPoint)>, QueryError> {
         Ok(self.nearest_to(&Query::new(p, *options)?, &mut Scratch::default()))
     }
@@ -74,6 +74,11 @@ impl Model {
             }
             found.1.lower_bound = lower_bound;
         }
+        // The entities that were not asked are no nearer, as far as boxes in the model's coordinates tell: the distance to
+        // one rounds by a few ulps of these, which counts where the model lies far from its origin.
+        let reach = self.overview().bounds.reach().max(query.point.abs().max_element());
+        let proven = (found.1.distance - 8.0 * f64::EPSILON * reach).max(0.0);
+        found.1.lower_bound = found.1.lower_bound.min(proven);
         (found.1.distance <= limit).then_some(found)
     }
 

@@ -24,7 +24,7 @@ impl<'a> Projector<'a> {
     ///
     /// # Errors
     ///
-    /// A coordinate that is no finite number or beyond 1e150; an option without meaning.
+    /// A coordinate that is no finite number or beyond 1e75; an option without meaning.
     pub fn project(&mut self, p: DVec3, options: &QueryOptions) -> Result<Option<FootPoint>, QueryError> {
         let query = Query::new(p, *options)?;
         let foot = self.prepared.project_near(&query, self.hint, &mut self.scratch);

@@ -13,7 +13,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// An unknown id; a coordinate that is no finite number or beyond 1e150.
+    /// An unknown id; a coordinate that is no finite number or beyond 1e75.
     pub fn project(&self, id: EntityId, p: DVec3) -> Result<FootPoint, QueryError> {
         let foot = self.project_with(id, p, &QueryOptions::default())?;
         Ok(foot.expect("an entity has a nearest point where no distance is too far"))

@@ -43,6 +43,12 @@ impl Aabb {
         if largest > 0.0 { largest * (extent / largest).length() } else { 0.0 }
     }
 
+    /// The largest |coordinate| of its corners.
+    #[must_use]
+    pub fn reach(&self) -> f64 {
+        self.min.abs().max(self.max.abs()).max_element()
+    }
+
     /// Square of the distance from `p` to the box; 0 inside.
     #[must_use]
     pub fn distance_squared(&self, p: DVec3) -> f64 {

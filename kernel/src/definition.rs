@@ -92,8 +92,7 @@ impl Definition {
     /// The largest |coordinate| of the control points.
     #[must_use]
     pub fn reach(&self) -> f64 {
-        let bounds = self.control_box();
-        bounds.min.abs().max(bounds.max.abs()).max_element()
+        self.control_box().reach()
     }
 
     /// A hash of the definition: two definitions that differ in a bit differ in it (but for chance).

@@ -164,8 +164,8 @@ pub enum InvalidDefinition {
         /// Last knot of the domain.
         last: f64,
     },
-    /// A coordinate is infinite, not a number, or beyond 1e100.
-    #[error("control_points{at} is ({x}, {y}, {z}); coordinates are finite and within ±1e100")]
+    /// A coordinate is infinite, not a number, or beyond 1e70.
+    #[error("control_points{at} is ({x}, {y}, {z}); coordinates are finite and within ±1e70")]
     BadPoint {
         /// Which control point.
         at: PointIndex,
@@ -212,8 +212,8 @@ pub enum InvalidDefinition {
         /// The first row's length.
         expected: usize,
     },
-    /// All control points are one point, or so close that their box is below 1e-100.
-    #[error("all control points are equal (or within 1e-100); an entity has an extent")]
+    /// All control points are one point, or so close that their box is below 1e-70.
+    #[error("all control points are equal (or within 1e-70); an entity has an extent")]
     NoExtent,
     /// A shape's parameter has no meaning: a zero axis, a negative radius, an empty sweep.
     #[error("{what} is {value}; {expected}")]

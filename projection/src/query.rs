@@ -51,14 +51,14 @@ pub struct Query {
 }
 
 /// Largest |coordinate| of a query point: its square stays finite.
-const COORDINATE_LIMIT: f64 = 1e150;
+const COORDINATE_LIMIT: f64 = 1e75;
 
 impl Query {
     /// A query for the point nearest to `point`.
     ///
     /// # Errors
     ///
-    /// A coordinate that is no finite number or beyond 1e150; an option without meaning.
+    /// A coordinate that is no finite number or beyond 1e75; an option without meaning.
     pub fn new(point: DVec3, options: QueryOptions) -> Result<Self, QueryError> {
         options.validate()?;
         if point.abs().cmple(DVec3::splat(COORDINATE_LIMIT)).all() {
@@ -79,8 +79,8 @@ pub enum QueryError {
         /// The id that was asked for.
         id: perpend_kernel::EntityId,
     },
-    /// A coordinate of the query point is infinite, not a number, or beyond 1e150.
-    #[error("query point {index} is ({x}, {y}, {z}); coordinates are finite and within ±1e150")]
+    /// A coordinate of the query point is infinite, not a number, or beyond 1e75.
+    #[error("query point {index} is ({x}, {y}, {z}); coordinates are finite and within ±1e75")]
     InvalidPoint {
         /// Index of the point in its batch; 0 for a single query.
         index: usize,

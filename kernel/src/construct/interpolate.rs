@@ -20,8 +20,8 @@ pub enum InvalidInterpolation {
         /// The degree.
         degree: usize,
     },
-    /// A coordinate is infinite, not a number, or beyond 1e100.
-    #[error("point {index} is {point}; coordinates are finite and within ±1e100")]
+    /// A coordinate is infinite, not a number, or beyond 1e70.
+    #[error("point {index} is {point}; coordinates are finite and within ±1e70")]
     BadPoint {
         /// Which point, in row order.
         index: usize,

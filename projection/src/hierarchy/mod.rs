@@ -260,7 +260,7 @@ impl Hierarchy {
     /// The distance from the query to the entity at parameters of the definition.
     fn distance_at(&self, p: DVec3, u: f64, v: f64) -> f64 {
         let holds = |leaf: &&Leaf| leaf.u.0 <= u && u <= leaf.u.1 && leaf.v.0 <= v && v <= leaf.v.1;
-        let leaf = self.leaves.iter().find(holds).expect("the leaves cover the domain");
+        let leaf = self.leaves.iter().find(holds).unwrap_or(&self.leaves[0]);
         let (s, t) = leaf.own_parameters(u, v);
         leaf.jet(s, t).cartesian().p.distance(p - leaf.origin)
     }
