@@ -1,7 +1,8 @@
 //! What is particular about a definition's parameters: ends that meet, edges that are one point, breaks, cusps.
 
 use glam::DVec3;
-use perpend_kernel::{Definition, Direction, KnotVector, NurbsCurve, NurbsSurface};
+use perpend_kernel::bezier::curve_pieces;
+use perpend_kernel::{Definition, Direction, KnotVector, NurbsCurve, NurbsSurface, Span, cartesian};
 
 /// Two points of a definition are one where they differ by at most this share of its largest |coordinate|: what rounding
 /// leaves of a closed net after a few operations.
@@ -77,52 +78,55 @@ pub(crate) fn turns(before: DVec3, after: DVec3) -> bool {
 }
 
 /// Whether a curve's first derivative `d` vanishes.
-pub(crate) fn vanishes(d: DVec3, definition: &Definition) -> bool {
-    let range = match definition {
-        Definition::NurbsCurve(curve) => curve.domain(),
-        Definition::NurbsSurface(surface) => surface.domain(Direction::U),
-    };
-    d.length() * (range.1 - range.0) <= VANISHING * definition.size()
+pub(crate) fn vanishes(d: DVec3, curve: &NurbsCurve) -> bool {
+    let (first, last) = curve.domain();
+    d.length() * (last - first) <= VANISHING * curve.control_box().diagonal()
 }
 
 /// Parameters strictly inside the spans at which the first derivative vanishes.
 ///
-/// Found, not proven: the speed is sampled on every span, and Newton's method for `C' · C'' = 0` polishes each local minimum. A cusp
-/// that is missed costs a proof more work and an answer its `Place::Cusp`, nothing else.
+/// A span whose control polygon never turns back along its chord has none: the derivative is a positive combination of the polygon's
+/// sides. On the others the speed is sampled, and Newton's method for `C' · C'' = 0` polishes each local minimum: found, not
+/// proven. A cusp that is missed costs a proof more work and an answer its `Place::Cusp`, nothing else.
 fn cusps(curve: &NurbsCurve) -> Vec<f64> {
-    let samples = 8 * curve.degree();
-    let definition = Definition::from(curve.clone());
     let mut found = Vec::new();
-    for span in curve.knots().spans() {
-        let step = (span.end - span.start) / samples as f64;
-        let jet = |u: f64| {
-            let mut d = [DVec3::ZERO; 4];
-            if u >= span.end {
-                curve.derivatives_from_left(u, &mut d);
-            } else {
-                curve.derivatives(u, &mut d);
-            }
-            d
-        };
-        let speeds: Vec<f64> = (0..=samples).map(|k| jet(span.start + step * k as f64)[1].length()).collect();
-        for k in 1..samples {
-            if speeds[k] > speeds[k - 1] || speeds[k] > speeds[k + 1] {
-                continue;
-            }
-            let (low, high) = (span.start + step * (k - 1) as f64, span.start + step * (k + 1) as f64);
-            let mut u = 0.5 * (low + high);
-            for _ in 0..12 {
-                let d = jet(u);
-                let slope = d[2].length_squared() + d[1].dot(d[3]);
-                if slope > 0.0 {
-                    u = (u - d[1].dot(d[2]) / slope).clamp(low, high);
-                }
-            }
-            if u > span.start && u < span.end && vanishes(jet(u)[1], &definition) {
-                found.push(u);
-            }
+    for piece in curve_pieces(curve.knots(), &curve.homogeneous_points()) {
+        let points: Vec<DVec3> = piece.points.iter().map(|h| cartesian(*h)).collect();
+        let chord = points[points.len() - 1] - points[0];
+        if points.windows(2).any(|side| (side[1] - side[0]).dot(chord) <= 0.0) {
+            found.extend(
+                slowest(curve, piece.span).filter(|(_, derivative)| vanishes(*derivative, curve)).map(|(u, _)| u),
+            );
         }
     }
     found.dedup();
     found
+}
+
+/// Local minima of the speed inside a span, with the derivative there.
+fn slowest(curve: &NurbsCurve, span: Span) -> impl Iterator<Item = (f64, DVec3)> {
+    let samples = 8 * curve.degree();
+    let step = (span.end - span.start) / samples as f64;
+    let jet = move |u: f64| {
+        let mut d = [DVec3::ZERO; 4];
+        if u >= span.end {
+            curve.derivatives_from_left(u, &mut d);
+        } else {
+            curve.derivatives(u, &mut d);
+        }
+        d
+    };
+    let speeds: Vec<f64> = (0..=samples).map(|k| jet(span.start + step * k as f64)[1].length()).collect();
+    (1..samples).filter(move |k| speeds[*k] <= speeds[k - 1] && speeds[*k] <= speeds[k + 1]).filter_map(move |k| {
+        let (low, high) = (span.start + step * (k - 1) as f64, span.start + step * (k + 1) as f64);
+        let mut u = 0.5 * (low + high);
+        for _ in 0..12 {
+            let d = jet(u);
+            let slope = d[2].length_squared() + d[1].dot(d[3]);
+            if slope > 0.0 {
+                u = (u - d[1].dot(d[2]) / slope).clamp(low, high);
+            }
+        }
+        (u > span.start && u < span.end).then(|| (u, jet(u)[1]))
+    })
 }

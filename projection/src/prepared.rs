@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use perpend_kernel::{Definition, Direction, NurbsSurface};
+use perpend_kernel::{Definition, Direction, NurbsCurve, NurbsSurface};
 
 use crate::answer::{Continuum, FootPoint, Method, Multiplicity, Parameter, Place, Ties};
 use crate::hierarchy::{Hierarchy, Solution, Tie, TieSet};
@@ -73,7 +73,7 @@ impl Prepared {
         let (parameter, point, place, normal) = match &*self.definition {
             Definition::NurbsCurve(curve) => {
                 let u = self.landmarks.lower(0, solution.u, curve.domain());
-                (Parameter::Curve(u), curve.point(u), self.place_on_curve(u), None)
+                (Parameter::Curve(u), curve.point(u), self.place_on_curve(curve, u), None)
             }
             Definition::NurbsSurface(surface) => {
                 let u = self.landmarks.lower(0, solution.u, surface.domain(Direction::U));
@@ -96,8 +96,7 @@ impl Prepared {
         }
     }
 
-    fn place_on_curve(&self, u: f64) -> Place {
-        let Definition::NurbsCurve(curve) = &*self.definition else { return Place::Interior };
+    fn place_on_curve(&self, curve: &NurbsCurve, u: f64) -> Place {
         let (first, last) = curve.domain();
         let (closed, at_end) = (self.landmarks.closed[0], u == first || u == last);
         let is_break = self.landmarks.breaks[0].contains(&u);
@@ -107,7 +106,7 @@ impl Prepared {
         let (mut before, mut after) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
         curve.derivatives_from_left(if at_end && closed { last } else { u }, &mut before);
         curve.derivatives(if at_end && closed { first } else { u }, &mut after);
-        let cusp = vanishes(before[1], &self.definition) || vanishes(after[1], &self.definition);
+        let cusp = vanishes(before[1], curve) || vanishes(after[1], curve);
         match (at_end, closed) {
             (true, false) => Place::End,
             _ if cusp => Place::Cusp,

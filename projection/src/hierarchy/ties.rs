@@ -55,7 +55,7 @@ impl Hierarchy {
         let mut nearest = self.project(query, None, workspace)?;
         let mut state = self.start(query);
         let coincidence = self.coincidence(query);
-        let reach = nearest.distance + state.gap;
+        let reach = nearest.distance + state.gap.max(self.asked_gap(query));
         workspace.candidates.clear();
         self.tree.nearer_than(state.point, squared(reach) * (1.0 + 8.0 * ROUNDING), &mut workspace.candidates);
         workspace.candidates.sort_unstable_by_key(|candidate| candidate.item);
