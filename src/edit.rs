@@ -5,7 +5,7 @@ use std::sync::{Arc, OnceLock};
 use perpend_kernel::{EntityId, InvalidDefinition};
 use perpend_knowledge::{NonFinite, Record};
 
-use crate::enter::{self, IntoDefinition};
+use crate::enter::IntoDefinition;
 use crate::entity::Entity;
 use crate::model::Model;
 
@@ -62,7 +62,7 @@ pub enum EditError {
 impl Model {
     /// Adds an entity as the last one and returns its id. Names need not be unique.
     ///
-    /// Unclamped knots are clamped, and the record says so.
+    /// Unclamped knots are clamped, and the record says so; an analytic shape enters with its class.
     ///
     /// # Errors
     ///
@@ -72,13 +72,13 @@ impl Model {
     ///
     /// After 2⁶⁴ - 1 ids.
     pub fn insert(&mut self, name: &str, definition: impl IntoDefinition) -> Result<EntityId, InvalidDefinition> {
-        let (definition, entry) = definition.enter()?;
+        let entered = definition.enter()?;
         let id = EntityId::new(self.next_id);
         self.next_id = self.next_id.checked_add(1).expect("a model has ids for 2^64 - 1 entities");
         let mut record = None;
-        enter::note(entry, &definition, &mut record);
+        entered.note(&mut record);
         self.index.insert(id, self.entities.len());
-        self.entities.push(Entity::new(id, name.to_owned(), definition, record));
+        self.entities.push(Entity::new(id, name.to_owned(), entered.definition, record));
         self.overview = OnceLock::new();
         Ok(id)
     }
@@ -93,12 +93,12 @@ impl Model {
     /// An unknown id; the first rule that the defining data break.
     pub fn replace(&mut self, id: EntityId, definition: impl IntoDefinition) -> Result<(), EditError> {
         let at = self.position(id)?;
-        let (definition, entry) = definition.enter().map_err(|source| EditError::Definition { id, source })?;
+        let entered = definition.enter().map_err(|source| EditError::Definition { id, source })?;
         let entity = &mut self.entities[at];
         let record = entity.record.get_or_insert_default();
-        record.forget_stale(definition.fingerprint());
-        enter::note(entry, &definition, &mut entity.record);
-        entity.definition = Arc::new(definition);
+        record.forget_stale(entered.definition.fingerprint());
+        entered.note(&mut entity.record);
+        entity.definition = Arc::new(entered.definition);
         entity.prepared = OnceLock::new();
         self.edited(at);
         Ok(())

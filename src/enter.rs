@@ -4,65 +4,93 @@ use perpend_kernel::clamp::Entry;
 use perpend_kernel::{
     CurveData, Definition, DefinitionData, Direction, InvalidDefinition, NurbsCurve, NurbsSurface, SurfaceData,
 };
-use perpend_knowledge::{Basis, Cleaning, Item, Record};
+use perpend_knowledge::{Basis, Cleaning, Item, Kind, Record};
 
-/// What can enter a model: a definition, or data that become one if they are valid.
+/// What can enter a model: a definition, data that become one if they are valid, or an analytic shape, which enters as its
+/// exact NURBS form.
 pub trait IntoDefinition {
-    /// Validates the data, and says what had to be done on entry.
+    /// The definition, with what its entry tells of it.
     ///
     /// # Errors
     ///
     /// The first rule that the data break.
-    fn enter(self) -> Result<(Definition, Entry), InvalidDefinition>;
+    fn enter(self) -> Result<Entered, InvalidDefinition>;
+}
+
+/// A definition that enters a model, with what its entry tells of it.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Entered {
+    /// The definition.
+    pub definition: Definition,
+    /// What had to be done on entry.
+    pub entry: Entry,
+    /// The class of an analytic shape.
+    pub kind: Option<Kind>,
+}
+
+impl Entered {
+    /// Adds to the record what the entry tells: the class, and what had to be done.
+    pub(crate) fn note(&self, record: &mut Option<Record>) {
+        let of = self.definition.fingerprint();
+        if let Some(kind) = &self.kind {
+            // far above the rounding of the exact form, and what recognition accepts
+            let tolerance = 1e-10 * self.definition.size();
+            let item = Item { value: kind.clone(), basis: Basis::Defined, tolerance, of };
+            record.get_or_insert_default().classification.get_or_insert_default().kind = Some(item);
+        }
+        for (direction, clamped) in [Direction::U, Direction::V].into_iter().zip(self.entry.clamped) {
+            if clamped {
+                let value = Cleaning::Clamped { direction };
+                let item = Item { value, basis: Basis::Defined, tolerance: 0.0, of };
+                let representation = record.get_or_insert_default().representation.get_or_insert_default();
+                let cleaning = representation.cleaning.get_or_insert_default();
+                if !cleaning.contains(&item) {
+                    cleaning.push(item);
+                }
+            }
+        }
+    }
+}
+
+impl From<Definition> for Entered {
+    fn from(definition: Definition) -> Self {
+        Self { definition, entry: Entry::default(), kind: None }
+    }
 }
 
 impl IntoDefinition for Definition {
-    fn enter(self) -> Result<(Definition, Entry), InvalidDefinition> {
-        Ok((self, Entry::default()))
+    fn enter(self) -> Result<Entered, InvalidDefinition> {
+        Ok(self.into())
     }
 }
 
 impl IntoDefinition for NurbsCurve {
-    fn enter(self) -> Result<(Definition, Entry), InvalidDefinition> {
-        Ok((self.into(), Entry::default()))
+    fn enter(self) -> Result<Entered, InvalidDefinition> {
+        Definition::from(self).enter()
     }
 }
 
 impl IntoDefinition for NurbsSurface {
-    fn enter(self) -> Result<(Definition, Entry), InvalidDefinition> {
-        Ok((self.into(), Entry::default()))
+    fn enter(self) -> Result<Entered, InvalidDefinition> {
+        Definition::from(self).enter()
     }
 }
 
 impl IntoDefinition for DefinitionData {
-    fn enter(self) -> Result<(Definition, Entry), InvalidDefinition> {
-        Self::enter(self)
+    fn enter(self) -> Result<Entered, InvalidDefinition> {
+        let (definition, entry) = Self::enter(self)?;
+        Ok(Entered { definition, entry, kind: None })
     }
 }
 
 impl IntoDefinition for CurveData {
-    fn enter(self) -> Result<(Definition, Entry), InvalidDefinition> {
-        DefinitionData::NurbsCurve(self).enter()
+    fn enter(self) -> Result<Entered, InvalidDefinition> {
+        IntoDefinition::enter(DefinitionData::NurbsCurve(self))
     }
 }
 
 impl IntoDefinition for SurfaceData {
-    fn enter(self) -> Result<(Definition, Entry), InvalidDefinition> {
-        DefinitionData::NurbsSurface(self).enter()
-    }
-}
-
-/// Notes in the record what was done to the defining data on their way in.
-pub(crate) fn note(entry: Entry, definition: &Definition, record: &mut Option<Record>) {
-    for (direction, clamped) in [Direction::U, Direction::V].into_iter().zip(entry.clamped) {
-        if clamped {
-            let value = Cleaning::Clamped { direction };
-            let item = Item { value, basis: Basis::Defined, tolerance: 0.0, of: definition.fingerprint() };
-            let representation = record.get_or_insert_default().representation.get_or_insert_default();
-            let cleaning = representation.cleaning.get_or_insert_default();
-            if !cleaning.contains(&item) {
-                cleaning.push(item);
-            }
-        }
+    fn enter(self) -> Result<Entered, InvalidDefinition> {
+        IntoDefinition::enter(DefinitionData::NurbsSurface(self))
     }
 }

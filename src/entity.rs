@@ -7,7 +7,7 @@ use perpend_knowledge::{NonFinite, Record};
 use perpend_projection::Prepared;
 use serde::{Deserialize, Serialize};
 
-use crate::enter;
+use crate::enter::IntoDefinition;
 use crate::written::{Writing, Written};
 
 /// An entity: its identity, its definition, what is known of it, and what queries need of it.
@@ -109,13 +109,13 @@ impl TryFrom<EntityData> for Entity {
     type Error = EntityError;
 
     fn try_from(data: EntityData) -> Result<Self, EntityError> {
-        let (definition, entry) = DefinitionData::from(data.definition).enter()?;
+        let entered = IntoDefinition::enter(DefinitionData::from(data.definition))?;
         let mut record = data.knowledge;
         if let Some(record) = &record {
             record.validate()?;
         }
-        enter::note(entry, &definition, &mut record);
-        Ok(Self::new(data.id, data.name, definition, record))
+        entered.note(&mut record);
+        Ok(Self::new(data.id, data.name, entered.definition, record))
     }
 }
 

@@ -31,11 +31,12 @@ mod model;
 mod nearest;
 mod projector;
 mod query;
+mod shapes;
 mod units;
 mod written;
 
 pub use edit::EditError;
-pub use enter::IntoDefinition;
+pub use enter::{Entered, IntoDefinition};
 pub use entity::{Entity, EntityError};
 pub use file::{AtomicFile, InvalidModel, ModelError, ReadError, WriteError};
 pub use model::Model;
@@ -44,8 +45,9 @@ pub use units::Units;
 
 pub use glam::{self, DVec3};
 pub use perpend_kernel::{
-    self as kernel, Aabb, Along, CurveData, Definition, DefinitionData, Direction, EntityId, Fingerprint,
-    InvalidDefinition, KnotVector, NurbsCurve, NurbsSurface, PointIndex, SurfaceData,
+    self as kernel, Aabb, Along, Circle, Cone, CurveData, Cylinder, Definition, DefinitionData, Direction, Ellipse,
+    EntityId, Fingerprint, Frame, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface, Plane, PointIndex,
+    Sphere, SurfaceData, Torus,
 };
 pub use perpend_knowledge::{
     self as knowledge, Basis, Classification, Cleaning, Definitions, Intent, Item, Kind, Operation, Origin, Record,

@@ -266,3 +266,58 @@ impl ser::SerializeMap for Compound<'_> {
         Ok(())
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use glam::DVec3;
+    use perpend_kernel::{EntityId, Fingerprint};
+
+    use crate::{
+        Basis, Classification, Intent, Item, Kind, Operation, Record, Relation, Relationship, Representation, Value,
+    };
+
+    fn of() -> Fingerprint {
+        "fnv1a64:0123456789abcdef".parse().expect("a fingerprint")
+    }
+
+    fn item<T>(value: T) -> Item<T> {
+        Item { value, basis: Basis::Defined, tolerance: 0.0, of: of() }
+    }
+
+    fn field(record: &Record) -> String {
+        record.validate().expect_err("not finite").field
+    }
+
+    #[test]
+    fn a_number_that_is_not_finite_is_named_by_its_way() {
+        assert_eq!(Record::default().validate(), Ok(()));
+        let part = Representation { length: Some(item(f64::NAN)), ..Representation::default() };
+        assert_eq!(field(&Record { representation: Some(part), ..Record::default() }), "representation.length.value");
+        let closed = Item { basis: Basis::Proved { gap: f64::INFINITY }, ..item((true, false)) };
+        let part = Representation { closed: Some(closed), ..Representation::default() };
+        assert_eq!(
+            field(&Record { representation: Some(part), ..Record::default() }),
+            "representation.closed.basis.gap"
+        );
+        let kind = Kind::Line { origin: DVec3::ZERO, direction: DVec3::NAN, range: (0.0, 1.0) };
+        let class = Classification { kind: Some(item(kind)), ..Classification::default() };
+        let record = Record { classification: Some(class), ..Record::default() };
+        assert_eq!(field(&record), "classification.kind.value.direction[0]");
+        let points = vec![DVec3::ZERO, DVec3::new(0.0, 0.0, f64::NEG_INFINITY)];
+        let operation = Operation::Interpolation { degree: (3, 0), points };
+        let intent = Intent { operation, inputs: Vec::new(), alternatives: Vec::new(), decision: String::new() };
+        assert_eq!(field(&Record { intent: vec![intent], ..Record::default() }), "intent[0].operation.points[1][2]");
+        let relationship = Relationship {
+            kind: Relation::Offset,
+            target: EntityId::new(1),
+            parameters: [("a".to_owned(), Value::Number(1.0)), ("b".to_owned(), Value::Numbers(vec![0.0, f64::NAN]))]
+                .into(),
+            checked: None,
+        };
+        let error = Record { relationships: vec![relationship], ..Record::default() }.validate().expect_err("a NaN");
+        assert_eq!(
+            error.to_string(),
+            "relationships[0].parameters[\"b\"][1] is NaN; numbers of a record are finite: correct it, or leave the item out"
+        );
+    }
+}

@@ -272,8 +272,67 @@ impl Tokens<'_> {
                 Some(Token::Open(_)) => depth += 1,
                 Some(Token::Close(_)) => depth -= 1,
                 Some(_) => {}
-                None => return,
+                None => {
+                    self.is_cut_off = true;
+                    return;
+                }
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The texts of the entities and of their ids.
+    fn entities(text: &str) -> Vec<(&str, Option<&str>)> {
+        let elements = Outline::of(text).entities;
+        elements.into_iter().map(|e| (&text[e.range], e.id.map(|id| &text[id]))).collect()
+    }
+
+    #[test]
+    fn entities_are_found_among_comments_and_strings() {
+        let text = r####"#![enable(implicit_some)] // entities: [
+            Model(format: 1, /* entities: [ /* (id: 9) */ ( */ entities: [
+                (id: 1, name: "] ) \" (id: 2)", knowledge: (entities: [(id: 3)])), // (id: 4),
+                Entity(name: r#"" ) "#, knowledge: ('"', '\'', b"(", br##"" )"##, id: 5), id: 6,),
+                (name: r##"("# ( "##, r#id: 7),
+                (id : /* 8 */ 9),
+            ], next_id: 12)"####;
+        let found = entities(text);
+        let ids: Vec<Option<&str>> = found.iter().map(|(_, id)| *id).collect();
+        assert_eq!(ids, [Some("1"), Some("6"), None, Some("9")]);
+        for ((element, _), start) in found.iter().zip(["(id: 1,", "Entity(", "(name: r##", "(id : "]) {
+            assert!(element.starts_with(start) && element.ends_with(')'), "{element}");
+        }
+        let outline = Outline::of(text);
+        assert_eq!(outline.format.map(|range| &text[range]), Some("1"));
+        assert_eq!(outline.next_id.map(|range| &text[range]), Some("12"));
+        assert!(!outline.is_cut_off && !outline.is_empty);
+    }
+
+    #[test]
+    fn what_is_cut_off_or_empty_is_seen() {
+        for text in ["(", "(entities: [(id: 1)", "\"abc", "/* /* */", "(a: r#\"b\")", "['x', {", "(b\"c)"] {
+            assert!(Outline::of(text).is_cut_off, "{text}");
+        }
+        for text in ["", " \n\t", "// nothing", "/* no /* thing */ */"] {
+            let outline = Outline::of(text);
+            assert!(outline.is_empty && !outline.is_cut_off, "{text}");
+        }
+        assert!(!Outline::of("()").is_empty);
+    }
+
+    #[test]
+    fn places_and_bytes_agree() {
+        let text = "a\n\u{e9}b\n\nc";
+        for (offset, (line, column)) in
+            [(0, (1, 1)), (2, (2, 1)), (4, (2, 2)), (5, (2, 3)), (6, (3, 1)), (7, (4, 1)), (8, (4, 2))]
+        {
+            assert_eq!(offset_at(text, line, column), offset, "{line}:{column}");
+            assert_eq!(line_at(text, offset), line);
+        }
+        assert_eq!(offset_at(text, 9, 9), text.len());
     }
 }
