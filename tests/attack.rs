@@ -269,19 +269,23 @@ fn heavy_weights_at_a_crowded_end_move_no_piece() {
     total.assert_faultless();
 }
 
-/// Found by the attack. Ends a hundred-trillionth of the size apart were taken for a seam, and the foot at the last parameter was
-/// given the first one, at the distance of the other.
+/// Found by the attack. Ends some ulps of the largest coordinate apart were taken for a seam, and a foot at the last parameter was
+/// given the first one, but the distance of the other. Far from the origin these ulps are a thousand gaps.
 #[test]
 fn ends_that_all_but_meet_are_told_apart() {
     let mut random = Random::new(80_000);
-    for apart in [1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8] {
-        for _ in 0..20 {
-            let mut points: Vec<DVec3> = (0..5).map(|_| 1e8 * random.in_cube()).collect();
-            points.push(points[0] + 2e8 * apart * random.direction());
-            let shape = Shape::curve(5, bezier_knots(5), points.clone(), None);
-            let queries = [points[5], points[0], 0.5 * (points[0] + points[5]), points[5] + 1e-6 * random.direction()];
-            let name = format!("a curve whose ends are {apart:e} apart");
-            attack(&name, &shape, &queries, &QueryOptions::default()).assert_faultless_and_certified();
+    for offset in [0.0, 1e7] {
+        for ulps in [1.0, 4.0, 24.0, 100.0, 1e4] {
+            for _ in 0..20 {
+                let far = offset * random.direction();
+                let mut points: Vec<DVec3> = (0..5).map(|_| far + random.in_cube()).collect();
+                let reach = points.iter().fold(0.0, |reach: f64, p| reach.max(p.abs().max_element()));
+                points.push(points[0] + ulps * f64::EPSILON * reach * random.direction());
+                let shape = Shape::curve(5, bezier_knots(5), points.clone(), None);
+                let queries = [points[5], points[0], 0.5 * (points[0] + points[5])];
+                let name = format!("a curve at {offset:e} whose ends are {ulps} ulps apart");
+                attack(&name, &shape, &queries, &QueryOptions::default()).assert_faultless_and_certified();
+            }
         }
     }
 }

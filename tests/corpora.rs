@@ -28,17 +28,19 @@ fn check(set: &str, rows: usize) {
             let mut fail =
                 |what: &str| failures.push(format!("{set} {} at {p}: {what}; {foot:?}, truth {want:e}", entry.name));
             let tolerance = 1e-9 * size + rounding(reach, p, want);
-            // not `>`: a NaN must fail too
-            if !((foot.distance - want).abs() <= tolerance) {
+            if [foot.distance, foot.lower_bound, foot.point.length()].iter().any(|x| x.is_nan()) {
+                fail("a number is no number");
+            }
+            if (foot.distance - want).abs() > tolerance {
                 fail("the distance is wrong");
             }
-            if !(foot.lower_bound <= want + 1e-10 * size + rounding(reach, p, want)) {
+            if foot.lower_bound > want + 1e-10 * size + rounding(reach, p, want) {
                 fail("the bound is false");
             }
             if !is_certified(foot.distance, foot.lower_bound, 1e-9 * size, reach, p) {
                 fail("it is not certified");
             }
-            if !(((foot.point - p).length() - foot.distance).abs() <= tolerance) {
+            if ((foot.point - p).length() - foot.distance).abs() > tolerance {
                 fail("the foot is not at its distance");
             }
             let (u, v) = (foot.parameter.u(), foot.parameter.v().unwrap_or(0.0));

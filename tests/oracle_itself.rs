@@ -171,7 +171,7 @@ fn a_bound_too_high_by_a_trillionth_of_the_size_is_convicted() {
 
 #[test]
 fn the_exact_evaluation_agrees_with_the_kernels() {
-    for kind in 0..KINDS.len() {
+    for (kind, (name, _)) in KINDS.iter().enumerate() {
         let mut random = Random::new(100 + kind as u64);
         let shape = adversary(kind, &mut random).shape;
         let definition = shape.definition();
@@ -185,14 +185,14 @@ fn the_exact_evaluation_agrees_with_the_kernels() {
             let off = (kernel - shape.point(u, v)).length();
             let degrees = (shape.degree[0] + shape.degree[1]) as f64;
             let allowed = 8.0 * degrees * f64::EPSILON * shape.reach();
-            assert!(off <= allowed, "{}: {off:e} apart, {allowed:e} promised", KINDS[kind].0);
+            assert!(off <= allowed, "{name}: {off:e} apart, {allowed:e} promised");
         }
     }
 }
 
 #[test]
 fn edits_of_the_tests_leave_the_entity_where_it_is() {
-    for kind in 0..KINDS.len() {
+    for (kind, (name, _)) in KINDS.iter().enumerate() {
         let mut random = Random::new(200 + kind as u64);
         let shape = adversary(kind, &mut random).shape;
         let [first, last] = shape.domain(0);
@@ -203,17 +203,17 @@ fn edits_of_the_tests_leave_the_entity_where_it_is() {
         for _ in 0..20 {
             let [u, v] = [0, 1].map(|k| parameter(&shape, k, &mut random));
             let point = shape.point(u, v);
-            assert!((inserted.point(u, v) - point).length() <= allowed, "knot {knot} in {}", KINDS[kind].0);
-            assert_eq!(swapped.point(v, u), point, "swapped {}", KINDS[kind].0);
+            assert!((inserted.point(u, v) - point).length() <= allowed, "knot {knot} in {name}");
+            assert_eq!(swapped.point(v, u), point, "swapped {name}");
             let back = Dd::difference(first, u) + Dd::from(last);
             let [x, y, z] = reversed.seen_from(point, back, v.into()).map(Dd::value);
             let grain = common::adversaries::grain(&shape);
-            assert!(DVec3::new(x, y, z).length() <= allowed + 4.0 * grain, "reversed {}", KINDS[kind].0);
+            assert!(DVec3::new(x, y, z).length() <= allowed + 4.0 * grain, "reversed {name}");
         }
         if shape.rows == shape.degree[0] + 1 {
             let v = parameter(&shape, 1, &mut random);
             let apart = shape.elevated().point(knot, v) - shape.point(knot, v);
-            assert!(apart.length() <= allowed, "elevated {}", KINDS[kind].0);
+            assert!(apart.length() <= allowed, "elevated {name}");
         }
     }
 }

@@ -20,9 +20,10 @@ pub struct Adversary {
 }
 
 type Made = (Shape, Vec<DVec3>);
+type Kind = (&'static str, fn(&mut Random) -> Made);
 
 /// Every kind, by name.
-pub const KINDS: &[(&str, fn(&mut Random) -> Made)] = &[
+pub const KINDS: &[Kind] = &[
     ("curve, weights far apart", weighted_curve),
     ("curve, crowded knots", crowded_curve),
     ("curve, uneven parameters", uneven_curve),

@@ -17,7 +17,7 @@ pub fn rounding(reach: f64, p: DVec3, distance: f64) -> f64 {
 /// Whether the distance of a real point proves `lower_bound` false. No allowance is made for the place of the
 /// entity in the world: a bound pays for its own rounding.
 pub fn is_false_bound(lower_bound: f64, real: f64, size: f64) -> bool {
-    !(lower_bound <= real + 1e-12 * size + 1e-15 * real)
+    lower_bound.is_nan() || lower_bound > real + 1e-12 * size + 1e-15 * real
 }
 
 /// Whether the answer is proven to within `gap`.

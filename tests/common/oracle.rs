@@ -323,11 +323,11 @@ impl<'a> Search<'a> {
             }
             // the point of the segment from x to the support that is nearest to the origin
             let step = support - x;
-            let share = (-x.dot(step) / step.length_squared()).clamp(0.0, 1.0);
-            if !(share > 0.0) {
+            let towards = -x.dot(step);
+            if towards <= 0.0 {
                 return bound;
             }
-            x += share * step;
+            x += (towards / step.length_squared()).min(1.0) * step;
         }
         bound
     }
