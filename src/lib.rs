@@ -57,3 +57,8 @@ pub use perpend_projection::{
     self as projection, Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Prepared, Query,
     QueryError, QueryOptions, Scratch, Statistics, Ties,
 };
+
+/// The programs of the guide, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/guide.md")]
+struct Guide;
