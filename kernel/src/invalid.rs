@@ -200,8 +200,8 @@ pub enum InvalidDefinition {
         /// Control points that were given.
         points: usize,
     },
-    /// A row of a surface's net is not as long as its first row.
-    #[error("{field}[{row}] has {found} entries, {field}[0] has {expected}; all rows of the net are equally long")]
+    /// A row of a surface's net is not as long as the first row of its control points.
+    #[error("{field}[{row}] has {found} entries, control_points[0] has {expected}; all rows of the net are equally long")]
     RaggedRow {
         /// `control_points` or `weights`.
         field: &'static str,
@@ -209,7 +209,7 @@ pub enum InvalidDefinition {
         row: usize,
         /// Its length.
         found: usize,
-        /// The first row's length.
+        /// The length of the first row of control points.
         expected: usize,
     },
     /// All control points are one point, or so close that their box is below 1e-70.

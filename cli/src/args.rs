@@ -1,0 +1,145 @@
+//! The command line.
+
+use std::path::PathBuf;
+
+use clap::builder::{PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, value_parser};
+use perpend::{EntityId, Method};
+
+use crate::names;
+
+/// Certified nearest points on the NURBS curves and surfaces of a model.
+///
+/// For each point, perpend gives the globally nearest point of an entity, and with it a proven lower bound: the true
+/// distance lies between `lower_bound` and `distance`.
+#[derive(Debug, Parser)]
+#[command(name = "perpend", version, max_term_width = 100, after_help = EXIT_CODES)]
+pub(crate) struct Arguments {
+    #[command(subcommand)]
+    pub(crate) command: Command,
+}
+
+const EXIT_CODES: &str = "\
+Exit codes: 0 done; 1 an input is wrong (standard error says what, where and how to mend it); 2 wrong usage.";
+
+#[derive(Debug, Subcommand)]
+pub(crate) enum Command {
+    /// Validate a model file and say what it holds
+    Check(CheckArguments),
+    /// Show the entities of a model and what is known of them
+    Show(ShowArguments),
+    /// Project points: the nearest point of an entity, or of the whole model, to each
+    Project(ProjectArguments),
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct CheckArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ShowArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    /// Show this entity alone, in full
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// Write JSON, for programs
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// Project points: the nearest point of an entity, or of the whole model, to each.
+///
+/// POINTS is CSV with a header that names the columns `x,y,z`, or `entity,x,y,z` where each row names its entity by id.
+/// With neither that column nor --entity, the nearest entity of the whole model answers. Other columns are carried through.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES, after_long_help = ABOUT_ANSWERS)]
+pub(crate) struct ProjectArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    /// The points (CSV); `-` is standard input
+    pub(crate) points: PathBuf,
+    /// Project all points onto this entity
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// The solver; without it, the one that fits the entity
+    #[arg(long, value_parser = method())]
+    pub(crate) method: Option<Method>,
+    /// Worker threads; without it, one for each core. Answers do not depend on it
+    #[arg(long, value_name = "N", value_parser = value_parser!(u16).range(1..=1024))]
+    pub(crate) threads: Option<u16>,
+    /// The largest difference between `distance` and `lower_bound` that satisfies, in the model's unit; without it, 1e-9 times
+    /// the entity's size
+    #[arg(long, value_name = "G", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) gap: Option<f64>,
+    /// Answer only where the nearest point is at most this far, in the model's unit; other rows get empty answers
+    #[arg(long, value_name = "D", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) max_distance: Option<f64>,
+    /// Add the columns `nx,ny,nz,signed_distance`: a surface's unit normal, and the distance with its sign
+    #[arg(long)]
+    pub(crate) normals: bool,
+    /// The file for the answers, written whole or not at all; without it, standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: Option<PathBuf>,
+}
+
+const ABOUT_ANSWERS: &str = "\
+Answers, one row for each row of POINTS, in order:
+  entity          the entity's id
+  x,y,z           the point, as it was written
+  u,v             the parameter of the nearest point; v is empty for a curve
+  fx,fy,fz        the nearest point: the entity evaluated at (u, v)
+  distance        from the point to the nearest point: never below the true distance
+  lower_bound     proven: no point of the entity is nearer than this. The true distance lies between
+                  lower_bound and distance
+  place           interior end edge corner seam pole cusp crease
+  multiplicity    unique, tied (another point is as near) or continuum (a whole curve or region is)
+  method          the solver that proposed the answer
+  nx,ny,nz,signed_distance
+                  with --normals; empty for a curve and where the surface has no normal. The sign is
+                  positive on the normal's side
+All lengths are in the model's unit. An input column with the name of an output column comes out as in_NAME.
+
+A bad row keeps its line, with empty answers, and is named on standard error; the other rows are answered, and the
+exit code is 1.
+
+Example:
+  perpend project bracket.ron scan.csv --entity 7 --normals -o deviations.csv
+
+Exit codes: 0 done; 1 an input is wrong (standard error says what, where and how to mend it); 2 wrong usage.";
+
+fn entity_id(text: &str) -> Result<EntityId, String> {
+    text.parse()
+        .map(EntityId::new)
+        .map_err(|_| "entities are called by id, a whole number: see `perpend show`".to_owned())
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    match text.parse() {
+        Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(length),
+        _ => Err("it is a length in the model's unit: a finite number, at least 0".to_owned()),
+    }
+}
+
+fn method() -> impl TypedValueParser<Value = Method> {
+    PossibleValuesParser::new(names::METHODS.map(names::method)).map(|name| {
+        let known = names::METHODS.into_iter().find(|method| names::method(*method) == name);
+        known.expect("no other name passes")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use clap::CommandFactory;
+
+    use super::*;
+
+    #[test]
+    fn the_command_line_contradicts_itself_nowhere() {
+        Arguments::command().debug_assert();
+    }
+}

@@ -1,0 +1,84 @@
+//! `perpend check`: validates a model.
+
+use std::fmt::Write as _;
+use std::process::ExitCode;
+
+use perpend::{Cleaning, Definition, Direction, Entity, Model};
+
+use crate::args::CheckArguments;
+use crate::error::CommandError;
+use crate::report::{self, counted, rounded};
+
+pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> {
+    let model = Model::read(&arguments.model)?;
+    let stale = model.entities().iter().filter(|entity| !entity.stale().is_empty()).count();
+    let surfaces = model.entities().iter().filter(|e| matches!(**e.definition(), Definition::NurbsSurface(_))).count();
+    let mut text = String::new();
+    for entity in model.entities() {
+        describe(&mut text, entity);
+    }
+    let count = |count: usize, noun| counted(count as u64, noun);
+    let _ = write!(
+        text,
+        "{}: valid; {}, {}; size {} {}",
+        arguments.model.display(),
+        count(model.len() - surfaces, "curve"),
+        count(surfaces, "surface"),
+        rounded(model.size()),
+        model.units().symbol(),
+    );
+    if stale > 0 {
+        let _ = write!(
+            text,
+            "; stale knowledge in {}",
+            if stale == 1 { "1 entity".to_owned() } else { format!("{stale} entities") }
+        );
+    }
+    text.push('\n');
+    report::answer(text.as_bytes())?;
+    Ok(ExitCode::SUCCESS)
+}
+
+/// A line for the entity, and one for each thing to know about it.
+fn describe(text: &mut String, entity: &Entity) {
+    let _ = writeln!(text, "{:>6}  {:?}: {}", entity.id(), entity.name(), shape(entity.definition()));
+    for direction in clamped(entity) {
+        let _ = writeln!(
+            text,
+            "        the knots in {direction} were not clamped; they are now, which leaves the shape as it is"
+        );
+    }
+    let stale = entity.stale();
+    if !stale.is_empty() {
+        let _ = writeln!(text, "        stale knowledge, computed from another definition: {}", stale.join(", "));
+    }
+}
+
+/// What a definition is, in words.
+pub(crate) fn shape(definition: &Definition) -> String {
+    let weights = if definition.weights().is_some() { "rational " } else { "" };
+    match definition {
+        Definition::NurbsCurve(curve) => {
+            format!("{weights}curve of degree {}, {} control points", curve.degree(), curve.control_points().len())
+        }
+        Definition::NurbsSurface(surface) => {
+            let (p, q) = surface.degree();
+            format!("{weights}surface of degree ({p}, {q}), {} x {} control points", surface.rows(), surface.columns())
+        }
+    }
+}
+
+/// The directions in which knots were clamped on entry.
+fn clamped(entity: &Entity) -> Vec<Direction> {
+    let representation = entity.record().and_then(|record| record.representation.as_ref());
+    let items = representation.and_then(|part| part.cleaning.as_deref()).unwrap_or_default();
+    let mut directions: Vec<Direction> = items
+        .iter()
+        .map(|item| match item.value {
+            Cleaning::Clamped { direction } => direction,
+        })
+        .collect();
+    directions.sort_unstable();
+    directions.dedup();
+    directions
+}

@@ -1,0 +1,90 @@
+//! Why a command ends early, and with which exit code.
+
+use std::io;
+use std::path::PathBuf;
+use std::process::ExitCode;
+
+use perpend::{EntityId, Model, ReadError, WriteError};
+
+use crate::project::points::PointsError;
+
+/// Why a command ends early.
+#[derive(Debug, thiserror::Error)]
+pub(crate) enum CommandError {
+    #[error(transparent)]
+    Model(#[from] ReadError),
+    #[error("{}: no entity has the id {id}; {known}", model.display())]
+    UnknownEntity { model: PathBuf, id: EntityId, known: String },
+    #[error("{}: the model has no entities, so nothing is nearest: add one", model.display())]
+    NoEntities { model: PathBuf },
+    #[error("{name}{}: {problem}", problem.line().map_or_else(String::new, |line| format!(":{line}")))]
+    Points { name: String, problem: PointsError },
+    #[error(transparent)]
+    Output(#[from] WriteError),
+    #[error("cannot write to standard output: {0}")]
+    StandardOutput(io::Error),
+    #[error("cannot start the worker threads: {0}; ask for fewer with --threads")]
+    Threads(#[from] rayon::ThreadPoolBuildError),
+    #[error("{name} has a column `entity`, and --entity names one too: leave out one of them")]
+    TwoEntities { name: String },
+    #[error("{} is the model; it would be lost: give another file to -o", path.display())]
+    OutputIsModel { path: PathBuf },
+}
+
+impl CommandError {
+    /// The entity of this id is not in the model.
+    pub(crate) fn unknown_entity(path: PathBuf, model: &Model, id: EntityId) -> Self {
+        Self::UnknownEntity { model: path, id, known: known_ids(model) }
+    }
+
+    pub(crate) fn exit_code(&self) -> ExitCode {
+        match self {
+            Self::TwoEntities { .. } | Self::OutputIsModel { .. } => ExitCode::from(2),
+            _ => ExitCode::FAILURE,
+        }
+    }
+
+    /// Whether the reader of the output has gone, which is its right.
+    pub(crate) fn is_closed_pipe(&self) -> bool {
+        match self {
+            Self::StandardOutput(source) | Self::Output(WriteError::Io { source, .. }) => {
+                source.kind() == io::ErrorKind::BrokenPipe
+            }
+            _ => false,
+        }
+    }
+}
+
+/// The ids of a model, in words; of many, the first few.
+pub(crate) fn known_ids(model: &Model) -> String {
+    const SHOWN: usize = 10;
+    let ids: Vec<String> = model.entities().iter().take(SHOWN).map(|entity| entity.id().to_string()).collect();
+    match model.len() {
+        0 => "it has no entities".to_owned(),
+        count if count <= SHOWN => format!("its ids are {}", ids.join(", ")),
+        count => format!("its ids are {} and {} more: see `perpend show`", ids.join(", "), count - SHOWN),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use perpend::{CurveData, DVec3};
+
+    use super::*;
+
+    #[test]
+    fn of_many_ids_the_first_few_are_named() {
+        let mut model = Model::new();
+        assert_eq!(known_ids(&model), "it has no entities");
+        for _ in 0..12 {
+            let line = CurveData {
+                degree: 1,
+                knots: vec![0.0, 0.0, 1.0, 1.0],
+                control_points: vec![DVec3::ZERO, DVec3::X],
+                weights: None,
+            };
+            model.insert("line", line).unwrap();
+        }
+        assert_eq!(known_ids(&model), "its ids are 1, 2, 3, 4, 5, 6, 7, 8, 9, 10 and 2 more: see `perpend show`");
+    }
+}

@@ -1,0 +1,151 @@
+//! From a batch of rows to rows of answers, on all threads.
+
+use std::collections::HashMap;
+
+use perpend::{DVec3, EntityId, FootPoint, Model, Query, QueryError, QueryOptions, Scratch};
+use rayon::prelude::*;
+
+use crate::project::answer::{Layout, Named};
+use crate::project::points::{Batch, Row};
+use crate::project::query::{self, Asked, Complaint};
+use crate::project::tally::{Certified, Tally};
+
+/// How many rows a thread takes at a time: enough that handing them out costs nothing beside them, and few enough that all
+/// threads get some.
+const ROWS: usize = 64;
+
+/// What is asked of the rows.
+#[derive(Debug, Clone, Copy)]
+pub(crate) enum Target {
+    /// This entity.
+    Entity(EntityId),
+    /// The entity that the row names.
+    Named,
+    /// The nearest entity of the model.
+    Nearest,
+}
+
+/// Answers rows.
+pub(crate) struct Engine<'a> {
+    pub(crate) model: &'a Model,
+    pub(crate) target: Target,
+    pub(crate) options: QueryOptions,
+    pub(crate) layout: Layout<'a>,
+    /// What counts as certified, per entity.
+    pub(crate) of_entity: HashMap<EntityId, Certified>,
+    /// And for the whole model.
+    pub(crate) of_model: Certified,
+}
+
+/// The answers to some rows.
+#[derive(Debug, Default)]
+pub(crate) struct Answers {
+    /// The rows to write.
+    pub(crate) text: Vec<u8>,
+    pub(crate) tally: Tally,
+    pub(crate) complaints: Vec<Complaint>,
+}
+
+/// A thread's working memory; it never changes an answer.
+#[derive(Default)]
+struct Memory {
+    scratch: Scratch,
+    /// The last foot and its entity: the next query to it spares what is farther away.
+    hint: Option<(EntityId, DVec3)>,
+}
+
+/// An answer: the entity and the foot, or none within the maximum distance.
+type Answer = Option<(EntityId, FootPoint)>;
+
+impl<'a> Engine<'a> {
+    pub(crate) fn new(model: &'a Model, target: Target, options: QueryOptions, layout: Layout<'a>) -> Self {
+        let of_entity = model.entities().iter().map(perpend::Entity::id);
+        let of_entity = of_entity.filter_map(|id| Some((id, Certified::of_entity(model, id, options.gap)?))).collect();
+        let of_model = Certified::of_model(model, options.gap);
+        Self { model, target, options, layout, of_entity, of_model }
+    }
+
+    /// The answers to a batch, in order, in parts.
+    pub(crate) fn answer(&self, batch: &Batch) -> Vec<Answers> {
+        (0..batch.len().div_ceil(ROWS))
+            .into_par_iter()
+            .map_init(Memory::default, |memory, part| {
+                let end = batch.len().min((part + 1) * ROWS);
+                let rows: Vec<Row<'_>> = (part * ROWS..end).map(|index| batch.row(index)).collect();
+                self.answer_part(&rows, memory)
+            })
+            .collect()
+    }
+
+    fn answer_part(&self, rows: &[Row<'_>], memory: &mut Memory) -> Answers {
+        let asked: Vec<Result<Asked, Complaint>> =
+            rows.iter().map(|row| query::read(*row, self.layout.columns, self.model)).collect();
+        let points: Vec<DVec3> = asked.iter().flatten().map(|asked| asked.point).collect();
+        let mut nearest = match self.target {
+            Target::Nearest => self.model.nearest_all(&points, &self.options).into_iter(),
+            _ => Vec::new().into_iter(),
+        };
+        let mut answers = Answers::default();
+        for (row, asked) in rows.iter().zip(asked) {
+            let answer = asked.and_then(|asked| {
+                let answer = match self.target {
+                    Target::Nearest => nearest.next().unwrap_or(Ok(None)),
+                    Target::Entity(id) => self.project(id, asked.point, memory),
+                    Target::Named => asked.entity.map_or(Ok(None), |id| self.project(id, asked.point, memory)),
+                };
+                answer.map(|answer| (asked, answer)).map_err(|error| self.refused(*row, asked.point, &error))
+            });
+            self.take(*row, answer, &mut answers);
+        }
+        answers
+    }
+
+    fn project(&self, id: EntityId, point: DVec3, memory: &mut Memory) -> Result<Answer, QueryError> {
+        let entity = self.model.entity(id).ok_or(QueryError::UnknownEntity { id })?;
+        let query = Query::new(point, self.options)?;
+        let hint = memory.hint.filter(|(of, _)| *of == id).map(|(_, foot)| foot);
+        let foot = entity.prepared().project_near(&query, hint, &mut memory.scratch);
+        memory.hint = foot.map(|foot| (id, foot.point)).or(memory.hint);
+        Ok(foot.map(|foot| (id, foot)))
+    }
+
+    fn refused(&self, row: Row<'_>, point: DVec3, error: &QueryError) -> Complaint {
+        let problem = match error {
+            QueryError::InvalidPoint { .. } => "the coordinate is beyond ±1e75; give a smaller one".to_owned(),
+            other => other.to_string(),
+        };
+        Complaint::out_of_range(row, self.layout.columns, point, problem)
+    }
+
+    /// Writes and counts the answer to a row.
+    fn take(&self, row: Row<'_>, answer: Result<(Asked, Answer), Complaint>, answers: &mut Answers) {
+        answers.tally.rows += 1;
+        let answer = match answer {
+            Ok((asked, Some((id, foot)))) => {
+                let certified = match self.target {
+                    Target::Nearest => self.of_model,
+                    _ => self.of_entity[&id],
+                };
+                answers.tally.answer(&foot, asked.point.abs().max_element(), certified);
+                Some((id, foot))
+            }
+            Ok((_, None)) => {
+                answers.tally.beyond += 1;
+                None
+            }
+            Err(complaint) => {
+                answers.tally.bad += 1;
+                answers.complaints.push(complaint);
+                None
+            }
+        };
+        let named = match self.target {
+            Target::Entity(id) => Named::Id(Some(id)),
+            Target::Named => {
+                Named::Written(self.layout.columns.entity.and_then(|at| row.field(at)).unwrap_or_default())
+            }
+            Target::Nearest => Named::Id(answer.map(|(id, _)| id)),
+        };
+        self.layout.row(&mut answers.text, row, named, answer.as_ref().map(|(_, foot)| foot));
+    }
+}

@@ -1,0 +1,134 @@
+//! `perpend project`: the nearest points to a file of points.
+
+mod answer;
+mod engine;
+mod output;
+pub(crate) mod points;
+mod progress;
+mod query;
+mod source;
+mod tally;
+
+use std::fs;
+use std::path::Path;
+use std::process::ExitCode;
+use std::time::{Duration, Instant};
+
+use indicatif::ProgressBar;
+use perpend::{Method, Model, QueryOptions};
+
+use crate::args::ProjectArguments;
+use crate::error::CommandError;
+use crate::project::answer::Layout;
+use crate::project::engine::{Answers, Engine, Target};
+use crate::project::output::Output;
+use crate::project::points::{Batch, Columns, Points};
+use crate::project::source::Source;
+use crate::project::tally::Tally;
+use crate::report::{counted, say};
+
+/// How many rows are in memory at a time.
+const BATCH: usize = 4096;
+
+/// How many bad rows are named one by one.
+const NAMED: usize = 20;
+
+pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError> {
+    // Until there are more methods, the one that can be named is the one that answers.
+    let (None | Some(Method::Hierarchy)) = arguments.method;
+    if let Some(path) = &arguments.output
+        && is_same_file(path, &arguments.model)
+    {
+        return Err(CommandError::OutputIsModel { path: path.clone() });
+    }
+    let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
+    let output = Output::open(arguments.output.as_deref())?;
+    let start = Instant::now();
+    let model = Model::read(&arguments.model)?;
+    let reading = start.elapsed();
+    if let Some(id) = arguments.entity
+        && model.entity(id).is_none()
+    {
+        return Err(CommandError::unknown_entity(arguments.model.clone(), &model, id));
+    }
+
+    if model.is_empty() {
+        return Err(CommandError::NoEntities { model: arguments.model.clone() });
+    }
+
+    let start = Instant::now();
+    let source = Source::of(&arguments.points);
+    let (input, length) = source.open()?;
+    let bar = progress::bar(length, arguments.output.is_some());
+    let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
+    let columns = points.header().map_err(|problem| source.wrong(problem))?;
+    let target = target(arguments, &source, &columns)?;
+    let options = QueryOptions { gap: arguments.gap, max_distance: arguments.max_distance, ..QueryOptions::default() };
+    let layout = Layout { columns: &columns, normals: arguments.normals };
+    let engine = Engine::new(&model, target, options, layout);
+
+    let mut journal = Journal { source: &source, bar: &bar, named: 0, tally: Tally::default() };
+    let mut output = output.write(&layout.header())?;
+    let mut batch = Batch::default();
+    loop {
+        points.read(&mut batch, BATCH).map_err(|problem| source.wrong(problem))?;
+        if batch.len() == 0 {
+            break;
+        }
+        for answers in threads.install(|| engine.answer(&batch)) {
+            output = output.write(&answers.text)?;
+            journal.take(&answers);
+        }
+        journal.show_progress(start.elapsed());
+    }
+    output.finish()?;
+    bar.finish_and_clear();
+    journal.finish(model.units().symbol(), reading, start.elapsed());
+    Ok(if journal.tally.bad == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// What the rows are projected onto.
+fn target(arguments: &ProjectArguments, source: &Source<'_>, columns: &Columns) -> Result<Target, CommandError> {
+    match (arguments.entity, columns.entity) {
+        (Some(_), Some(_)) => Err(CommandError::TwoEntities { name: source.to_string() }),
+        (Some(id), None) => Ok(Target::Entity(id)),
+        (None, Some(_)) => Ok(Target::Named),
+        (None, None) => Ok(Target::Nearest),
+    }
+}
+
+fn is_same_file(a: &Path, b: &Path) -> bool {
+    matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+}
+
+/// What is told while the run lasts.
+struct Journal<'a> {
+    source: &'a Source<'a>,
+    bar: &'a ProgressBar,
+    /// How many bad rows have been named.
+    named: usize,
+    tally: Tally,
+}
+
+impl Journal<'_> {
+    fn take(&mut self, answers: &Answers) {
+        for complaint in answers.complaints.iter().take(NAMED - self.named) {
+            self.bar.suspend(|| say(format_args!("{}:{complaint}", self.source)));
+            self.named += 1;
+        }
+        self.tally.add(&answers.tally);
+    }
+
+    fn show_progress(&self, elapsed: Duration) {
+        let rate = self.tally.rows as f64 / elapsed.as_secs_f64().max(1e-9);
+        self.bar.set_message(format!("{}, {rate:.0} points/s", counted(self.tally.rows, "point")));
+    }
+
+    fn finish(&self, unit: &str, reading: Duration, projecting: Duration) {
+        let unnamed = self.tally.bad - self.named as u64;
+        if unnamed > 0 {
+            say(format_args!("{}: and {} like these", self.source, counted(unnamed, "other bad row")));
+        }
+        self.tally.report(unit, reading, projecting);
+    }
+}

@@ -1,0 +1,8 @@
+//! The command as its users meet it: a process with arguments, files, output and an exit code.
+
+mod bad_models;
+mod bad_points;
+mod check_and_show;
+mod output;
+mod project;
+mod workshop;
