@@ -4,6 +4,8 @@
 //! A bound is false where a real point, evaluated to 30 digits, is nearer. An answer is wrong where a real point is nearer by
 //! more than the gap although the answer says that it is certified.
 
+#![allow(clippy::print_stderr, reason = "the counts are wanted by readers")]
+
 mod common;
 
 use std::sync::Arc;
@@ -157,6 +159,13 @@ fn a_hundred_thousand_hard_queries_find_no_false_bound_and_no_wrong_foot() {
         attack(&name, &adversary.shape, &points, &QueryOptions::default())
     });
     assert_eq!(total.queries, 100_000);
+    eprintln!(
+        "100000 queries: {} at fault, {} uncertified, at most {} splits; the oracle beaten {} times",
+        total.faults.len(),
+        total.uncertified.len(),
+        total.most_splits,
+        total.oracle_beaten.len()
+    );
     total.assert_faultless_and_certified();
     // a blunt oracle would convict nobody
     let beaten = &total.oracle_beaten;
