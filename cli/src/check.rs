@@ -45,7 +45,7 @@ fn describe(text: &mut String, entity: &Entity) {
     for direction in clamped(entity) {
         let _ = writeln!(
             text,
-            "        the knots in {direction} were not clamped; they are now, which leaves the shape as it is"
+            "        knots in {direction} came unclamped and were clamped, which leaves the shape as it is"
         );
     }
     let stale = entity.stale();

@@ -13,8 +13,8 @@ pub(crate) fn bar(length: Option<u64>, writes_to_file: bool) -> ProgressBar {
     let target = if is_seen { ProgressDrawTarget::stderr() } else { ProgressDrawTarget::hidden() };
     let bar = ProgressBar::with_draw_target(length, target);
     let template = match length {
-        Some(_) => "{bar:40} {percent:>3} %  {msg}  {elapsed} (about {eta} left)",
-        None => "{spinner} {msg}  {elapsed}",
+        Some(_) => "{wide_bar} {percent:>3} %  {msg}, {eta} left",
+        None => "{spinner} {msg}, {elapsed}",
     };
     if let Ok(style) = ProgressStyle::with_template(template) {
         bar.set_style(style);

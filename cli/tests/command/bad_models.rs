@@ -131,11 +131,11 @@ fn curves_that_break_a_rule() {
     );
     says_of_curve(
         "degree: 1, knots: [0, 0, 1, 1], control_points: [(0, 0, 0), (1, NaN, 0)]",
-        "control_points[1] is (1, NaN, 0); coordinates are finite and within ±1e70",
+        "control_points[1] is (1.0, NaN, 0.0); coordinates are finite and within ±1e70",
     );
     says_of_curve(
         "degree: 1, knots: [0, 0, 1, 1], control_points: [(0, 0, -inf), (1, 0, 0)]",
-        "control_points[0] is (0, 0, -inf); coordinates are finite and within ±1e70",
+        "control_points[0] is (0.0, 0.0, -inf); coordinates are finite and within ±1e70",
     );
     says_of_curve(
         "degree: 1, knots: [0, 0, 1, 1], control_points: [(1, 1, 1), (1, 1, 1)]",
@@ -180,7 +180,7 @@ fn surfaces_that_break_a_rule() {
     );
     says_of_surface(
         &format!("degree: (1, 1), {knots}, {}", net.replace("(1, 1, 0)", "(1, 1, inf)")),
-        "control_points[1][1] is (1, 1, inf); coordinates are finite and within ±1e70",
+        "control_points[1][1] is (1.0, 1.0, inf); coordinates are finite and within ±1e70",
     );
     says_of_surface(
         &format!("degree: (1, 1), {knots}, {net}, weights: Some([[1, 1], [1, 0]])"),

@@ -45,7 +45,7 @@ fn check_says_what_each_entity_is_and_what_was_done_to_it() {
     assert_eq!(
         run.out,
         "     3  \"open \\\"end\\\"\": curve of degree 2, 4 control points
-        the knots in u were not clamped; they are now, which leaves the shape as it is
+        knots in u came unclamped and were clamped, which leaves the shape as it is
      4  \"\": rational surface of degree (1, 2), 2 x 3 control points
         stale knowledge, computed from another definition: classification.kind
 model.ron: valid; 1 curve, 1 surface; size 3.3541 m; stale knowledge in 1 entity
