@@ -82,7 +82,7 @@ pub(crate) struct ProjectArguments {
     /// Add the columns `nx,ny,nz,signed_distance`: a surface's unit normal, and the distance with its sign
     #[arg(long)]
     pub(crate) normals: bool,
-    /// The file for the answers, written whole or not at all; without it, standard output
+    /// The file for the answers, written whole or not at all; without it, or with `-`, standard output
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: Option<PathBuf>,
 }

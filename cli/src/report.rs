@@ -25,3 +25,15 @@ pub(crate) fn answer(text: &[u8]) -> Result<(), CommandError> {
     let mut out = io::stdout().lock();
     out.write_all(text).and_then(|()| out.flush()).map_err(CommandError::StandardOutput)
 }
+
+/// Text of an input in a message: its beginning, on one line.
+pub(crate) fn shown(field: &[u8]) -> String {
+    const SHOWN: usize = 40;
+    let text = String::from_utf8_lossy(field);
+    let mut letters = text.chars().flat_map(|letter| {
+        let is_plain = !letter.is_control();
+        is_plain.then_some(letter).into_iter().chain(letter.escape_default().filter(move |_| !is_plain))
+    });
+    let start: String = letters.by_ref().take(SHOWN).collect();
+    if letters.next().is_some() { start + "…" } else { start }
+}

@@ -36,13 +36,14 @@ const NAMED: usize = 20;
 pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError> {
     // Until there are more methods, the one that can be named is the one that answers.
     let (None | Some(Method::Hierarchy)) = arguments.method;
-    if let Some(path) = &arguments.output
+    let file = arguments.output.as_deref().filter(|path| path.as_os_str() != "-");
+    if let Some(path) = file
         && is_same_file(path, &arguments.model)
     {
-        return Err(CommandError::OutputIsModel { path: path.clone() });
+        return Err(CommandError::OutputIsModel { path: path.to_owned() });
     }
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
-    let output = Output::open(arguments.output.as_deref())?;
+    let output = Output::open(file)?;
     let start = Instant::now();
     let model = Model::read(&arguments.model)?;
     let reading = start.elapsed();
@@ -59,7 +60,7 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let start = Instant::now();
     let source = Source::of(&arguments.points);
     let (input, length) = source.open()?;
-    let bar = progress::bar(length, arguments.output.is_some());
+    let bar = progress::bar(length, file.is_some());
     let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
     let columns = points.header().map_err(|problem| source.wrong(problem))?;
     let target = target(arguments, &source, &columns)?;

@@ -6,7 +6,7 @@
 use std::fmt::Write as _;
 use std::io::{self, BufRead, BufReader, Read};
 
-use crate::report::counted;
+use crate::report::{counted, shown};
 
 /// How long one row may be. A quote that is never closed would swallow the rest of the file.
 const LONGEST_ROW: usize = 1 << 20;
@@ -27,6 +27,8 @@ pub(crate) enum PointsError {
     Utf16,
     #[error("the header is not UTF-8 text; save the file as UTF-8")]
     HeaderNotUtf8 { line: u64 },
+    #[error("a quote in the header is not closed; close it, or write it twice to mean itself")]
+    OpenHeader { line: u64 },
     #[error("the header has {missing}; found {found}. {remedy}")]
     MissingColumns { line: u64, missing: String, found: String, remedy: &'static str },
     #[error("columns {first} and {second} are both named `{name}`; rename or remove one")]
@@ -102,6 +104,7 @@ impl PointsError {
         match self {
             Self::Read(_) | Self::Directory | Self::Empty | Self::Utf16 => None,
             Self::HeaderNotUtf8 { line }
+            | Self::OpenHeader { line }
             | Self::MissingColumns { line, .. }
             | Self::DuplicateColumn { line, .. }
             | Self::EndlessRow { line } => Some(*line),
@@ -273,13 +276,16 @@ impl<'a> Row<'a> {
 impl Columns {
     fn of(header: Row<'_>) -> Result<Self, PointsError> {
         let line = header.line();
+        if header.is_unclosed() {
+            return Err(PointsError::OpenHeader { line });
+        }
         let names: Option<Vec<String>> =
             header.fields().map(|name| Some(std::str::from_utf8(name).ok()?.trim().to_owned())).collect();
         let names = names.ok_or(PointsError::HeaderNotUtf8 { line })?;
         for (second, name) in names.iter().enumerate() {
             if let Some(first) = names[..second].iter().position(|other| other == name) {
                 let (first, second) = (first + 1, second + 1);
-                return Err(PointsError::DuplicateColumn { line, name: name.clone(), first, second });
+                return Err(PointsError::DuplicateColumn { line, name: shown(name.as_bytes()), first, second });
             }
         }
         let place = |wanted: &str| names.iter().position(|name| name == wanted);
@@ -301,7 +307,8 @@ fn missing_columns(line: u64, names: &[String]) -> PointsError {
         .map(|wanted| format!("`{wanted}`"))
         .collect();
     let noun = if missing.len() == 1 { "column" } else { "columns" };
-    let mut found = names.iter().take(SHOWN).map(|name| format!("`{name}`")).collect::<Vec<_>>().join(", ");
+    let mut found =
+        names.iter().take(SHOWN).map(|name| format!("`{}`", shown(name.as_bytes()))).collect::<Vec<_>>().join(", ");
     if names.len() > SHOWN {
         let _ = write!(found, " and {}", counted((names.len() - SHOWN) as u64, "other"));
     }

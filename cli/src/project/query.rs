@@ -5,7 +5,7 @@ use std::fmt;
 use perpend::{DVec3, EntityId, Model};
 
 use crate::project::points::{Columns, Row};
-use crate::report::counted;
+use crate::report::{counted, shown};
 
 /// What a row asks.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,7 +31,7 @@ impl fmt::Display for Complaint {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "{}: ", self.line)?;
         if let Some(column) = &self.column {
-            write!(f, "column {column}: ")?;
+            write!(f, "column {}: ", shown(column.as_bytes()))?;
         }
         f.write_str(&self.problem)
     }
@@ -114,16 +114,4 @@ fn entity(text: &str, model: &Model) -> Result<EntityId, String> {
         Some(_) => Ok(id),
         None => Err(format!("the model has no entity {id}; correct the id: see `perpend show`")),
     }
-}
-
-/// A field in a message: its beginning, on one line.
-fn shown(field: &[u8]) -> String {
-    const SHOWN: usize = 40;
-    let text = String::from_utf8_lossy(field);
-    let mut letters = text.chars().flat_map(|letter| {
-        let is_plain = !letter.is_control();
-        is_plain.then_some(letter).into_iter().chain(letter.escape_default().filter(move |_| !is_plain))
-    });
-    let start: String = letters.by_ref().take(SHOWN).collect();
-    if letters.next().is_some() { start + "…" } else { start }
 }

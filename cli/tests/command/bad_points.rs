@@ -127,6 +127,11 @@ fn a_header_that_cannot_be_used_is_named_with_what_was_found() {
     says_of_file("a,b,c,d,e,f,g,h,i,j\n", "found `a`, `b`, `c`, `d`, `e`, `f`, `g`, `h` and 2 others.");
     says_of_file("x,y,z,x\n1,2,3,4\n", "points.csv:1: columns 1 and 4 are both named `x`; rename or remove one");
     says_of_file("x,y,z,a, a\n", "points.csv:1: columns 4 and 5 are both named `a`; rename or remove one");
+    says_of_file("x,y,\"z\n1,2,3\n", "points.csv:1: a quote in the header is not closed; close it");
+    says_of_file(
+        format!("x,y,{}\n", "zz".repeat(1000)),
+        "found `x`, `y`, `zzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzzz…`.",
+    );
     says_of_file(b"x,y,z,\xff\n", "points.csv:1: the header is not UTF-8 text; save the file as UTF-8");
     says_of_file(b"\xff\xfex\0,\0y\0", "points.csv: the file is UTF-16 text; save it as UTF-8");
 }

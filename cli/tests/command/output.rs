@@ -23,6 +23,7 @@ fn a_file_holds_what_standard_output_would() {
     to_file.ends(0, "100 points in ");
     assert_eq!(to_file.out, "");
     assert_eq!(workshop.read("out.csv"), to_output.out);
+    assert_eq!(workshop.project(points(100), &["-o", "-"]).out, to_output.out, "`-` is standard output");
     assert_eq!(workshop.files(), ["model.ron", "out.csv", "points.csv"]);
 }
 
