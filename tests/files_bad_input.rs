@@ -184,17 +184,17 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "(3.0, 1.0, 0.5)",
         "(3.0, inf, 0.5)",
-        "5: entity 4: definition: control_points[3] is (3, inf, 0.5); coordinates are finite and within ±1e70",
+        "5: entity 4: definition: control_points[3] is (3.0, inf, 0.5); coordinates are finite and within ±1e70",
     ),
     (
         "(3.0, 1.0, 0.5)",
         "(NaN, 1.0, -inf)",
-        "5: entity 4: definition: control_points[3] is (NaN, 1, -inf); coordinates are finite and within ±1e70",
+        "5: entity 4: definition: control_points[3] is (NaN, 1.0, -inf); coordinates are finite and within ±1e70",
     ),
     (
         "(3.0, 1.0, 0.5)",
         "(3.0, 1e999, 0.5)",
-        "5: entity 4: definition: control_points[3] is (3, inf, 0.5); coordinates are finite and within ±1e70",
+        "5: entity 4: definition: control_points[3] is (3.0, inf, 0.5); coordinates are finite and within ±1e70",
     ),
     (
         "1.0, 2.0, 2.0, 2.0]",
@@ -244,7 +244,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "(1.0, 0.0, 0.0), (1.0, 1.0, 1.0)",
         "(0.0, 0.0, inf), (1.0, 1.0, 1.0)",
-        "15: entity 7: definition: control_points[1][0] is (0, 0, inf); coordinates are finite and within ±1e70",
+        "15: entity 7: definition: control_points[1][0] is (0.0, 0.0, inf); coordinates are finite and within ±1e70",
     ),
     (
         "[(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(1.0, 0.0, 0.0), (1.0, 1.0, 1.0)]",

@@ -253,7 +253,7 @@ fn refused_queries_say_why() {
     let message = |p: DVec3| model.project(id, p).expect_err("a bad point").to_string();
     assert_eq!(
         message(DVec3::new(0.0, f64::NAN, 1.0)),
-        "query point 0 is (0, NaN, 1); coordinates are finite and within ±1e75"
+        "query point 0 is (0.0, NaN, 1.0); coordinates are finite and within ±1e75"
     );
     assert!(message(DVec3::new(0.0, 0.0, f64::NEG_INFINITY)).contains("-inf"));
     assert!(model.nearest(DVec3::NAN, &options).is_err());

@@ -165,7 +165,7 @@ pub enum InvalidDefinition {
         last: f64,
     },
     /// A coordinate is infinite, not a number, or beyond 1e70.
-    #[error("control_points{at} is ({x}, {y}, {z}); coordinates are finite and within ±1e70")]
+    #[error("control_points{at} is ({x:?}, {y:?}, {z:?}); coordinates are finite and within ±1e70")]
     BadPoint {
         /// Which control point.
         at: PointIndex,
@@ -201,7 +201,9 @@ pub enum InvalidDefinition {
         points: usize,
     },
     /// A row of a surface's net is not as long as the first row of its control points.
-    #[error("{field}[{row}] has {found} entries, control_points[0] has {expected}; all rows of the net are equally long")]
+    #[error(
+        "{field}[{row}] has {found} entries, control_points[0] has {expected}; all rows of the net are equally long"
+    )]
     RaggedRow {
         /// `control_points` or `weights`.
         field: &'static str,

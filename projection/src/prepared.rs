@@ -63,6 +63,7 @@ impl Prepared {
 
     fn answer(&self, solution: &Solution) -> FootPoint {
         let frame = &self.hierarchy.frame;
+        let solution = &self.on_lower_side(solution.clone());
         let distance = frame.length(solution.distance);
         let lower_bound = frame.length(solution.lower_bound).min(distance);
         let multiplicity = match solution.tie {
@@ -72,12 +73,11 @@ impl Prepared {
         };
         let (parameter, point, place, normal) = match &*self.definition {
             Definition::NurbsCurve(curve) => {
-                let u = self.landmarks.lower(0, solution.u, curve.domain());
+                let u = solution.u;
                 (Parameter::Curve(u), curve.point(u), self.place_on_curve(curve, u), None)
             }
             Definition::NurbsSurface(surface) => {
-                let u = self.landmarks.lower(0, solution.u, surface.domain(Direction::U));
-                let v = self.landmarks.lower(1, solution.v, surface.domain(Direction::V));
+                let (u, v) = (solution.u, solution.v);
                 let (place, normal) = self.place_on_surface(surface, u, v, solution.normal);
                 (Parameter::Surface(u, v), surface.point(u, v), place, normal)
             }
@@ -94,6 +94,35 @@ impl Prepared {
             signed_distance: side.map(|side| if side < 0.0 { -distance } else { distance }),
             method: Method::Hierarchy,
         }
+    }
+
+    /// A foot on a seam has two parameters: the lower one is given, where both are one point but for rounding.
+    ///
+    /// The ends of a definition that closes only to an ulp of its coordinates may differ by more than rounding in the entity's own;
+    /// then the foot stays where it was found, since the distance belongs to it.
+    fn on_lower_side(&self, mut solution: Solution) -> Solution {
+        let lower = |closed: bool, u: f64, (first, last): (f64, f64)| if closed && u == last { first } else { u };
+        let closed = self.landmarks.closed;
+        let at = |u: f64, v: f64| match &*self.definition {
+            Definition::NurbsCurve(curve) => curve.point(u),
+            Definition::NurbsSurface(surface) => surface.point(u, v),
+        };
+        let (u, v) = match &*self.definition {
+            Definition::NurbsCurve(curve) => (lower(closed[0], solution.u, curve.domain()), solution.v),
+            Definition::NurbsSurface(surface) => (
+                lower(closed[0], solution.u, surface.domain(Direction::U)),
+                lower(closed[1], solution.v, surface.domain(Direction::V)),
+            ),
+        };
+        if (u, v) != (solution.u, solution.v) {
+            let moved = (at(u, v) - at(solution.u, solution.v)) * self.hierarchy.frame.scale;
+            let offset = solution.offset + moved;
+            if moved.length() <= 16.0 * f64::EPSILON * (1.0 + solution.distance) {
+                (solution.u, solution.v, solution.offset, solution.distance) = (u, v, offset, offset.length());
+                solution.lower_bound = solution.lower_bound.min(solution.distance);
+            }
+        }
+        solution
     }
 
     fn place_on_curve(&self, curve: &NurbsCurve, u: f64) -> Place {
@@ -173,12 +202,5 @@ impl Prepared {
         let crease = normals.windows(2).any(|pair| turns(pair[0], pair[1]));
         let sum: DVec3 = normals.iter().sum();
         (sum.try_normalize(), crease)
-    }
-}
-
-impl Landmarks {
-    /// A foot on a seam has two parameters: the lower one is given.
-    fn lower(&self, direction: usize, u: f64, (first, last): (f64, f64)) -> f64 {
-        if self.closed[direction] && u == last { first } else { u }
     }
 }

@@ -8,7 +8,8 @@ pub struct QueryOptions {
     /// The largest difference between `distance` and `lower_bound` that satisfies, in the model's unit; none: 1e-9 times the
     /// entity's size.
     pub gap: Option<f64>,
-    /// Only feet at most this far are wanted, in the model's unit; none: however far.
+    /// Only feet at most this far are wanted, in the model's unit; none: however far. Where the work bound stops the proof that
+    /// there is none, the nearest foot that was found is answered, with its bound, though it is farther.
     pub max_distance: Option<f64>,
     /// Feet farther than this from one another are different feet, in the model's unit; none: 1e-6 times the size.
     pub coincidence: Option<f64>,
@@ -80,7 +81,7 @@ pub enum QueryError {
         id: perpend_kernel::EntityId,
     },
     /// A coordinate of the query point is infinite, not a number, or beyond 1e75.
-    #[error("query point {index} is ({x}, {y}, {z}); coordinates are finite and within ±1e75")]
+    #[error("query point {index} is ({x:?}, {y:?}, {z:?}); coordinates are finite and within ±1e75")]
     InvalidPoint {
         /// Index of the point in its batch; 0 for a single query.
         index: usize,

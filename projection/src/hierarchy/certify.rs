@@ -95,6 +95,17 @@ impl Part<'_> {
         }
     }
 
+    /// Looks for a foot from the part's linear guess: none can be nearer than what is proven, but one may be as near.
+    pub(super) fn look_for_tie(&self, state: &mut State) {
+        let x = state.point - self.leaf.origin;
+        let (s, t) = self.leaf.linear_guess(x);
+        let domain = Domain::WHOLE;
+        let decrease = 1e-3 * state.margin();
+        let search = Search { domain, start: domain.clamp(s, t), known: None, iterations: 8, decrease };
+        let found = newton::search(self.leaf, x, search, &mut state.statistics, |_| false);
+        self.offer(&found, state);
+    }
+
     /// Tells the state of a point of the part.
     fn offer(&self, found: &Found, state: &mut State) {
         state.offer(self.foot(found), self.is_whole().then_some(found.jet));
@@ -228,6 +239,7 @@ impl Proof<'_> {
         let g = &mut memory.nets[cell.offset..cell.offset + cell.len()];
         let least = net::least(g);
         if least > threshold + cell.rounding + cell.slack {
+            self.look_for_tie(least, state);
             return Verdict::Closed;
         }
         if let Some(verdict) = self.corner(cell, g, least, budget, state) {
@@ -254,6 +266,21 @@ impl Proof<'_> {
             }
         }
         Verdict::Open { least }
+    }
+
+    /// A box that is only just positive may hold a foot as near as the best, within the gap.
+    fn look_for_tie(&mut self, least: f64, state: &mut State) {
+        let leaf = self.part.leaf;
+        let reach = state.reach();
+        let limit = if leaf.rational {
+            (reach - self.formed) * (reach + self.formed) * leaf.heaviest * leaf.heaviest
+        } else {
+            reach * reach
+        };
+        if least < limit && !self.tried {
+            self.tried = true;
+            self.part.look_for_tie(state);
+        }
     }
 
     /// Test 2. None where the least coefficient is no corner's; otherwise the corner is evaluated, which may find a nearer point.

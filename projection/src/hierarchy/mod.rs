@@ -60,6 +60,9 @@ const DEEPEST: u32 = PREPARED_DEPTH + REFINED_DEPTH;
 /// How many leaves may come of splitting bent pieces; beyond, pieces stay whole.
 const MOST_LEAVES: usize = 200_000;
 
+/// Nearer to a leaf's border than this share of the leaf, a foot may be on it but for rounding.
+const NEAR_BORDER: f64 = 1e-6;
+
 /// An entity's leaves and their tree.
 #[derive(Debug)]
 pub(crate) struct Hierarchy {
@@ -78,7 +81,7 @@ pub(crate) struct Workspace {
 }
 
 /// What the solver found, in the entity's own coordinates.
-#[derive(Debug)]
+#[derive(Debug, Clone)]
 pub(crate) struct Solution {
     /// Parameters of the definition.
     pub u: f64,
@@ -120,7 +123,7 @@ impl Hierarchy {
         Self { frame, tree: BoxTree::new(&boxes), leaves, reserve: Frame::reserve(degree, reach) }
     }
 
-    /// The nearest point of the entity; none where nothing is within the query's `max_distance`. `hint` is any point of the entity.
+    /// The nearest point of the entity; none where it is proven that nothing is within the query's `max_distance`. `hint` is any point of the entity.
     pub(crate) fn project(&self, query: &Query, hint: Option<DVec3>, workspace: &mut Workspace) -> Option<Solution> {
         let mut state = self.start(query);
         let hint = hint.map_or(f64::INFINITY, |point| self.frame.enter(point).distance(state.point));
@@ -128,7 +131,9 @@ impl Hierarchy {
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
         let coincidence = self.coincidence(query);
         let solution = self.solution(&mut state, coincidence);
-        (self.frame.length(solution.distance) <= limit).then_some(solution)
+        // a box left open may hold a point within the limit
+        let unproven = self.frame.length(state.open) <= limit;
+        (unproven || self.frame.length(solution.distance) <= limit).then_some(solution)
     }
 
     fn coincidence(&self, query: &Query) -> f64 {
@@ -166,7 +171,8 @@ impl Hierarchy {
         let asked = self.asked_gap(query);
         // The proof is sought closer than asked by what rounding may take away again. Where that leaves less than half, or
         // the asked gap is finer than the forms can tell at this distance, the finest gap that they can tell is sought.
-        let left = asked - 2.0 * self.reserve - 20.0 * ROUNDING * point.length();
+        // A fiftieth is kept for the foot's parameters, which are rounded after the proof.
+        let left = 0.98 * asked - 2.0 * self.reserve - 20.0 * ROUNDING * point.length();
         let reachable = 40.0 * rounding_factor(leaf.degree) * ROUNDING * best.distance + 2.0 * self.reserve;
         State {
             point,
@@ -185,10 +191,12 @@ impl Hierarchy {
         query.options.gap.unwrap_or(1e-9 * self.frame.size) * self.frame.scale
     }
 
-    /// Proves every leaf that could hold a point nearer than `tau`, the nearest box first.
+    /// Proves every leaf that could hold a point nearer than `tau`, the nearest box first; then looks for feet in those that can
+    /// hold none nearer than that, but others as near within the gap.
     fn walk(&self, state: &mut State, hint: f64, workspace: &mut Workspace) {
         let Workspace { memory, candidates } = workspace;
-        let (mut from, mut to) = (0.0, squared(state.tau().min(hint)));
+        // a hint of a point at distance h: the best will be at most h + gap away, and others as near within the gap count
+        let (mut from, mut to) = (0.0, squared(state.reach().min(hint + 2.0 * state.gap)));
         while state.tau() > 0.0 {
             candidates.clear();
             state.statistics.boxes += self.tree.nearer_than(state.point, to, candidates);
@@ -200,14 +208,18 @@ impl Hierarchy {
             candidates
                 .sort_unstable_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared).then(a.item.cmp(&b.item)));
             for candidate in candidates.iter() {
-                if candidate.distance_squared >= squared(state.tau()) {
+                let leaf = &self.leaves[candidate.item as usize];
+                let part = Part { leaf, index: candidate.item, within: Domain::WHOLE };
+                if candidate.distance_squared < squared(state.tau()) {
+                    close(part, state, memory, 0);
+                } else if candidate.distance_squared < squared(state.reach()) {
+                    part.look_for_tie(state);
+                } else {
                     return;
                 }
-                let leaf = &self.leaves[candidate.item as usize];
-                close(Part { leaf, index: candidate.item, within: Domain::WHOLE }, state, memory, 0);
             }
             // the leaves beyond the bound that the hint gave, if they are needed after all
-            (from, to) = (to, squared(state.tau()));
+            (from, to) = (to, squared(state.reach()));
             if to <= from {
                 return;
             }
@@ -226,7 +238,8 @@ impl Hierarchy {
     /// A foot at the definition's parameters as they are reported.
     fn solution_at(&self, foot: &Foot, lower_bound: f64, state: &State) -> Solution {
         let leaf = &self.leaves[foot.leaf as usize];
-        let (u, v) = leaf.parameters(foot.s, foot.t);
+        let (s, t) = self.snap(foot);
+        let (u, v) = leaf.parameters(s, t);
         let (s, t) = leaf.own_parameters(u, v);
         let c = leaf.jet(s, t).cartesian();
         let offset = c.p - (state.point - leaf.origin);
@@ -243,17 +256,35 @@ impl Hierarchy {
         }
     }
 
-    /// Newton's method from a foot, to convergence, in its prepared leaf.
+    /// A foot's parameters, on the border of its leaf where it lies beside it by no more than rounding: there are the edges,
+    /// seams, poles and creases that `place` tells by the parameter.
+    fn snap(&self, foot: &Foot) -> (f64, f64) {
+        let leaf = &self.leaves[foot.leaf as usize];
+        let rounding = 16.0 * ROUNDING * (1.0 + foot.distance);
+        let mut at = (foot.s, foot.t);
+        let point = |(s, t): (f64, f64)| leaf.jet(s, t).cartesian().p + leaf.origin;
+        let border = |x: f64| {
+            if x > 0.0 && x < NEAR_BORDER {
+                0.0
+            } else if x < 1.0 && x > 1.0 - NEAR_BORDER {
+                1.0
+            } else {
+                x
+            }
+        };
+        for snapped in [(border(at.0), at.1), (at.0, border(at.1)), (border(at.0), border(at.1))] {
+            if snapped != at && point(snapped).distance(foot.point) <= rounding {
+                at = snapped;
+            }
+        }
+        at
+    }
+
+    /// A foot as exactly as its coordinates allow, in its prepared leaf.
     fn polish(&self, foot: &Foot, known: Option<Jet>, state: &mut State) -> (Foot, Jet) {
         let leaf = &self.leaves[foot.leaf as usize];
-        let search = Search {
-            domain: Domain::WHOLE,
-            start: (foot.s, foot.t),
-            known,
-            iterations: 6,
-            decrease: 1e-3 * state.gap * state.gap,
-        };
-        let found = newton::search(leaf, state.point - leaf.origin, search, &mut state.statistics, |_| false);
+        let x = state.point - leaf.origin;
+        let found = newton::polish(leaf, x, (foot.s, foot.t), known, &mut state.statistics);
         (Part { leaf, index: foot.leaf, within: Domain::WHOLE }.foot(&found), found.jet)
     }
 

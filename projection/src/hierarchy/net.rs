@@ -36,6 +36,11 @@ pub(super) fn least(g: &[f64]) -> f64 {
     g.iter().copied().fold(f64::INFINITY, smaller)
 }
 
+/// The largest coefficient.
+pub(super) fn most(g: &[f64]) -> f64 {
+    g.iter().copied().fold(f64::NEG_INFINITY, larger)
+}
+
 /// The least of `a[i] - b[i]`.
 fn least_difference(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| a - b).fold(f64::INFINITY, smaller)

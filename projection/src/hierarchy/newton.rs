@@ -2,9 +2,9 @@
 
 use glam::DVec3;
 
-use super::ROUNDING;
-use super::jet::Jet;
+use super::jet::{CartesianJet, Jet};
 use super::leaf::Leaf;
+use super::{ROUNDING, squared};
 use crate::statistics::Statistics;
 
 /// A point of a leaf.
@@ -88,26 +88,96 @@ pub(super) fn search(
                 }
             }
         }
-        // half the gradient and half the Hessian of D
-        let (gs, gt) = (r.dot(c.ps), r.dot(c.pt));
-        let (ss, st, tt) = (c.ps.length_squared(), c.ps.dot(c.pt), c.pt.length_squared());
-        let (hss, hst, htt) = (ss + r.dot(c.pss), st + r.dot(c.pst), tt + r.dot(c.ptt));
-        let held = |x: f64, (from, to): (f64, f64), g: f64| (x <= from && g >= 0.0) || (x >= to && g <= 0.0);
-        let (hold_s, hold_t) = (held(s, domain.s, gs), one || held(t, domain.t, gt));
-        let (ds, dt) = match (hold_s, hold_t) {
-            (true, true) => break,
-            (true, false) => (0.0, step(gt, htt, tt)),
-            (false, true) => (step(gs, hss, ss), 0.0),
-            (false, false) => step2((gs, gt), (hss, hst, htt), (ss, st, tt)),
-        };
+        let Some(((ds, dt), promised)) = newton_step(&domain, one, (s, t), &c, r) else { break };
         let (next_s, next_t) = domain.clamp(s + ds, t + dt);
         let moved = (next_s - s).abs().max((next_t - t).abs());
         (s, t) = (next_s, next_t);
-        if moved < 1e-15 || -(gs * ds + gt * dt) <= decrease {
+        if moved < 1e-15 || promised <= decrease {
             break;
         }
     }
     best.expect("the start is a point").1
+}
+
+/// The foot near `start` as exactly as its coordinates allow.
+///
+/// Squared distances that differ by rounding alone cannot tell two points apart: near the surface they leave half the digits of
+/// the parameters open. What tells is the part of `S - x` along the directions in which the point may still move; Newton's
+/// steps are taken while that falls.
+pub(super) fn polish(
+    leaf: &Leaf,
+    x: DVec3,
+    start: (f64, f64),
+    known: Option<Jet>,
+    statistics: &mut Statistics,
+) -> Found {
+    let (domain, one) = (Domain::WHOLE, leaf.degree.1 == 0);
+    // a slower direction is one of rounding: a pole has none along its edge
+    let slowest = squared(64.0 * ROUNDING * leaf.radius);
+    let mut evaluate = |s: f64, t: f64, jet: Option<Jet>| {
+        let jet = jet.unwrap_or_else(|| {
+            statistics.evaluations += 1;
+            leaf.jet(s, t)
+        });
+        let c = jet.cartesian();
+        let r = c.p - x;
+        let found = Found { distance: r.length(), s, t, jet };
+        (found, c, r, residual(&domain, one, (s, t), &c, r, slowest))
+    };
+    let (mut best, mut c, mut r, mut left) = evaluate(start.0, start.1, known);
+    for _ in 0..POLISHING {
+        let Some(((ds, dt), _)) = newton_step(&domain, one, (best.s, best.t), &c, r) else { break };
+        let (s, t) = domain.clamp(best.s + ds, best.t + dt);
+        if (s, t) == (best.s, best.t) || left <= squared(ROUNDING * (best.distance + leaf.radius)) {
+            break;
+        }
+        let next = evaluate(s, t, None);
+        let noise = 4.0 * ROUNDING * (best.distance + leaf.radius);
+        if next.3 >= left || next.0.distance > best.distance + noise {
+            break;
+        }
+        (best, c, r, left) = next;
+    }
+    best
+}
+
+/// Steps of [`polish`]: from where a search ends, Newton's method needs one or two; a flat minimum is approached by a factor.
+const POLISHING: u32 = 10;
+
+/// The squared length of the part of `r` along the directions in which a point of the box may still move.
+fn residual(domain: &Domain, one: bool, (s, t): (f64, f64), c: &CartesianJet, r: DVec3, slowest: f64) -> f64 {
+    let along = |x: f64, range: (f64, f64), d: DVec3| {
+        let (g, dd) = (r.dot(d), d.length_squared());
+        if is_held(x, range, g) || dd <= slowest { 0.0 } else { g * g / dd }
+    };
+    along(s, domain.s, c.ps) + if one { 0.0 } else { along(t, domain.t, c.pt) }
+}
+
+/// Whether a point at a border of its range would leave it downhill.
+fn is_held(x: f64, (from, to): (f64, f64), slope: f64) -> bool {
+    (x <= from && slope >= 0.0) || (x >= to && slope <= 0.0)
+}
+
+/// A Newton step for half of `D = |S - x|²`, with the decrease of half `D` that its slope promises; none where the box holds
+/// the point in every direction.
+fn newton_step(
+    domain: &Domain,
+    one: bool,
+    (s, t): (f64, f64),
+    c: &CartesianJet,
+    r: DVec3,
+) -> Option<((f64, f64), f64)> {
+    // half the gradient and half the Hessian of D
+    let (gs, gt) = (r.dot(c.ps), r.dot(c.pt));
+    let (ss, tt) = (c.ps.length_squared(), c.pt.length_squared());
+    let (hss, hst, htt) = (ss + r.dot(c.pss), c.ps.dot(c.pt) + r.dot(c.pst), tt + r.dot(c.ptt));
+    let (ds, dt) = match (is_held(s, domain.s, gs), one || is_held(t, domain.t, gt)) {
+        (true, true) => return None,
+        (true, false) => (0.0, step(gt, htt, tt)),
+        (false, true) => (step(gs, hss, ss), 0.0),
+        (false, false) => step2((gs, gt), (hss, hst, htt), (ss, tt)),
+    };
+    Some(((ds, dt), -(gs * ds + gt * dt)))
 }
 
 /// One Newton step in one parameter. The second derivative is used wherever it is positive, however small (beside a centre of
@@ -117,18 +187,31 @@ fn step(g: f64, h: f64, first: f64) -> f64 {
     if h > 0.0 { -g / h } else { 0.0 }
 }
 
-/// One Newton step in two parameters; where the Hessian is not positive, one of Gauss and Newton, and where the directions are
-/// parallel, one in each by itself.
-fn step2((gs, gt): (f64, f64), (hss, hst, htt): (f64, f64, f64), (ss, st, tt): (f64, f64, f64)) -> (f64, f64) {
-    let solve = |a: f64, b: f64, c: f64| {
-        let determinant = a * c - b * b;
-        ((gt * b - gs * c) / determinant, (gs * b - gt * a) / determinant)
-    };
-    if hss > 0.0 && hss * htt - hst * hst > 1e-13 * ss * tt {
-        solve(hss, hst, htt)
-    } else if ss * tt - st * st > 1e-6 * ss * tt {
-        solve(ss, st, tt)
-    } else {
-        (step(gs, ss, ss), step(gt, tt, tt))
+/// One Newton step in two parameters. Where the Hessian is not positive, it is taken apart into its two directions (in parameters
+/// scaled to unit speed), and each makes its own step as in [`step`]: along a circle of feet that are all as near, one is flat.
+fn step2((gs, gt): (f64, f64), (hss, hst, htt): (f64, f64, f64), (ss, tt): (f64, f64)) -> (f64, f64) {
+    let determinant = hss * htt - hst * hst;
+    if hss > 0.0 && determinant > 1e-13 * ss * tt {
+        return ((gt * hst - gs * htt) / determinant, (gs * hst - gt * hss) / determinant);
     }
+    let (speed_s, speed_t) = (ss.sqrt(), tt.sqrt());
+    if speed_s == 0.0 || speed_t == 0.0 {
+        return (step(gs, hss, ss), step(gt, htt, tt));
+    }
+    let (a, b, c) = (hss / ss, hst / (speed_s * speed_t), htt / tt);
+    let (mean, half, radius) = (0.5 * (a + c), 0.5 * (a - c), (0.5 * (a - c)).hypot(b));
+    // the direction of the greater eigenvalue
+    let (x, y) = if radius == 0.0 {
+        (1.0, 0.0)
+    } else if half >= 0.0 {
+        (half + radius, b)
+    } else {
+        (b, radius - half)
+    };
+    let length = x.hypot(y);
+    let (x, y) = (x / length, y / length);
+    let (gs, gt) = (gs / speed_s, gt / speed_t);
+    let along = step(gs * x + gt * y, mean + radius, 1.0);
+    let across = step(gt * x - gs * y, mean - radius, 1.0);
+    ((along * x - across * y) / speed_s, (along * y + across * x) / speed_t)
 }

@@ -46,6 +46,11 @@ impl State {
         (self.best.distance - self.gap).max(0.0).min(self.limit)
     }
 
+    /// How far a foot may be to count as one as near as the best.
+    pub(super) fn reach(&self) -> f64 {
+        (self.best.distance + self.gap).min(self.limit)
+    }
+
     /// What the squared distance of a foot exceeds `tau²` by, at least, where it is worth proving.
     pub(super) fn margin(&self) -> f64 {
         let tau = self.tau();

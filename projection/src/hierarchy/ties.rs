@@ -3,7 +3,9 @@
 //! The form is made at `reach`, the upper bound plus the gap, and its boxes are split until each is one of these:
 //!
 //! - positive: it holds no point within `reach`;
-//! - reduced to a corner, or convex: its points within `reach`, if any, surround one foot, which Newton's method finds;
+//! - reduced to a corner, or convex, and so steep that its points within `reach` extend no farther than the resolution: they
+//!   surround one foot, which Newton's method finds;
+//! - negative and wide: all of it lies within reach;
 //! - as narrow as the resolution: undecided. Undecided boxes that touch make one set. Where Newton's method leads from all of them to one
 //!   point, that is a foot (its form is flat, or rounding hides its curvature); else they are a continuum.
 
@@ -47,6 +49,8 @@ struct Undecided {
     leaf: u32,
     domain: Domain,
     parameters: ParameterBox,
+    /// Whether all of it is proven to lie within reach, and it is wider than the resolution.
+    wide: bool,
 }
 
 impl Hierarchy {
@@ -80,10 +84,13 @@ impl Hierarchy {
             (true, 0 | 1) => Tie::None,
             (true, _) => Tie::Apart,
         };
-        let feet = feet
-            .iter()
-            .map(|foot| Solution { tie: nearest.tie, ..self.solution_at(foot, nearest.lower_bound, &state) });
-        Some(TieSet { feet: feet.collect(), nearest, continua, complete: state.work > 0 })
+        let at_nearest = |foot: &Foot| foot.point.distance(state.point + nearest.offset) <= coincidence;
+        let solution = |foot: &Foot| match at_nearest(foot) {
+            true => nearest.clone(),
+            false => Solution { tie: nearest.tie, ..self.solution_at(foot, nearest.lower_bound, &state) },
+        };
+        let feet = feet.iter().map(solution).collect();
+        Some(TieSet { feet, continua, complete: state.work > 0, nearest })
     }
 
     /// Splits a leaf until every box is decided or narrow.
@@ -105,32 +112,39 @@ impl Hierarchy {
         let rounding = rounding_bound(leaf.degree, x.length(), leaf.radius, reach, leaf.heaviest);
         let mut cells = vec![Cell { net: form, m, n, domain: Domain::WHOLE, rounding }];
         let mut matrices = Vec::new();
+        let resolution = coincidence.max(RESOLUTION);
         while let Some(mut cell) = cells.pop() {
             if net::least(&cell.net) > threshold + cell.rounding {
                 continue;
             }
-            while reduce(&mut cell) {}
-            let extent = (cell.domain.s.1 - cell.domain.s.0, cell.domain.t.1 - cell.domain.t.0);
-            let patch = Patch { g: &cell.net, m: cell.m, n: cell.n, extent, rounding: cell.rounding };
-            let decided = (cell.m == 0 && cell.n == 0) || convex::curvature(patch, &mut matrices).is_some();
-            if decided {
+            let diameter = diameter(leaf, &cell.domain);
+            // how far the form may fall below the threshold, and how much of the box the points that do may take up
+            let depth = threshold + 2.0 * cell.rounding - net::least(&cell.net);
+            let share = resolution / diameter;
+            let wide = diameter > resolution && net::most(&cell.net) < threshold - cell.rounding;
+            while !wide && reduce(&mut cell, depth / share) {}
+            if !wide && ((cell.m == 0 && cell.n == 0) || is_steep_valley(&cell, depth, share, &mut matrices)) {
                 let start = (0.5 * (cell.domain.s.0 + cell.domain.s.1), 0.5 * (cell.domain.t.0 + cell.domain.t.1));
                 feet.push(part.foot(&converge(leaf, x, cell.domain, start, state)));
-            } else if state.work == 0 || diameter(leaf, &cell.domain) <= coincidence.max(RESOLUTION) {
+            } else if wide || state.work == 0 || diameter <= resolution {
                 let (from, to) = (cell.domain.s, cell.domain.t);
                 let low = leaf.parameters(from.0, to.0);
                 let high = leaf.parameters(from.1, to.1);
                 let parameters = ParameterBox { u: (low.0, high.0), v: (low.1, high.1) };
-                undecided.push(Undecided { leaf: part.index, domain: cell.domain, parameters });
+                undecided.push(Undecided { leaf: part.index, domain: cell.domain, parameters, wide });
             } else {
                 state.work -= 1;
-                cells.extend(halves(cell));
+                let down = is_longer_down(leaf, &cell.domain);
+                cells.extend(halves(cell, down));
             }
         }
     }
 
     /// The one point that Newton's method leads to from all boxes of a set, if it is one.
     fn common_foot(&self, set: &[Undecided], coincidence: f64, state: &mut State) -> Option<Foot> {
+        if set.iter().any(|u| u.wide) {
+            return None;
+        }
         let mut feet = set.iter().map(|u| {
             let leaf = &self.leaves[u.leaf as usize];
             let start = (0.5 * (u.domain.s.0 + u.domain.s.1), 0.5 * (u.domain.t.0 + u.domain.t.1));
@@ -185,10 +199,21 @@ fn converge(leaf: &Leaf, x: DVec3, domain: Domain, start: (f64, f64), state: &mu
     newton::search(leaf, x, search, &mut state.statistics, |_| false)
 }
 
-/// Replaces a box by an edge whose coefficients are proven to be the least: its points within reach surround feet on that edge.
-fn reduce(cell: &mut Cell) -> bool {
+/// Whether the form is convex on the box, and rises so fast that its points below the threshold take up no more than
+/// `share` of the box in either direction: where the form falls to `-depth`, they reach `sqrt(2 depth / curvature)` far.
+fn is_steep_valley(cell: &Cell, depth: f64, share: f64, matrices: &mut Vec<[f64; 3]>) -> bool {
+    // in units of the box
+    let patch = Patch { g: &cell.net, m: cell.m, n: cell.n, extent: (1.0, 1.0), rounding: cell.rounding };
+    let steep = |degree: usize, curvature: f64| degree == 0 || 2.0 * depth <= curvature * share * share;
+    convex::curvature(patch, matrices).is_some_and(|c| steep(cell.m, c.s) && steep(cell.n, c.t))
+}
+
+/// Replaces a box by an edge above which the form rises at once: `G(s, t) >= G(0, t) + v s`, where all other rows stay above the
+/// edge's by `v` (for `1 - (1 - s)^m >= s`), the bound of rounding apart. With `v` of at least `steepness`, the points below the
+/// threshold stay beside the edge.
+fn reduce(cell: &mut Cell, steepness: f64) -> bool {
     let (m, n, width) = (cell.m, cell.n, cell.n + 1);
-    let enough = 2.0 * cell.rounding;
+    let enough = steepness + 2.0 * cell.rounding;
     if m > 0 {
         for row in [0, m] {
             if net::rows_above(&cell.net, width, row) > enough {
@@ -212,11 +237,11 @@ fn reduce(cell: &mut Cell) -> bool {
     false
 }
 
-fn halves(cell: Cell) -> [Cell; 2] {
+fn halves(cell: Cell, down: bool) -> [Cell; 2] {
     let Cell { net: mut low, m, n, domain, rounding } = cell;
     let (_, largest) = net::extremes(&low);
     let mut high = vec![0.0; low.len()];
-    let down = n == 0 || (m > 0 && net::bends_more_down(&low, m, n));
+    let down = n == 0 || (m > 0 && down);
     let (mut first, mut second) = (domain, domain);
     let degree = if down {
         net::halve_down(&mut low, &mut high, m, n + 1);
@@ -241,6 +266,15 @@ fn diameter(leaf: &Leaf, domain: &Domain) -> f64 {
     let points = corners.into_iter().chain([middle]).map(|(s, t)| leaf.jet(s, t).cartesian().p);
     let points: smallvec::SmallVec<[DVec3; 5]> = points.collect();
     points.iter().flat_map(|a| points.iter().map(|b| a.distance(*b))).fold(0.0, f64::max)
+}
+
+/// Whether a box of a leaf is longer in s than in t, across its middle.
+fn is_longer_down(leaf: &Leaf, domain: &Domain) -> bool {
+    let middle = (0.5 * (domain.s.0 + domain.s.1), 0.5 * (domain.t.0 + domain.t.1));
+    let at = |s: f64, t: f64| leaf.jet(s, t).cartesian().p;
+    let s = at(domain.s.0, middle.1).distance_squared(at(domain.s.1, middle.1));
+    let t = at(middle.0, domain.t.0).distance_squared(at(middle.0, domain.t.1));
+    s >= t
 }
 
 fn holds((from, to): (f64, f64), x: f64) -> bool {
