@@ -249,12 +249,12 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "[(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(1.0, 0.0, 0.0), (1.0, 1.0, 1.0)]",
         "[], []",
-        "15: entity 7: definition: 0 control points along v degree 1; at least 2 are needed: add control points or lower the degree",
+        "15: entity 7: definition: 0 control points for v degree 1; at least 2 are needed: add control points or lower the degree",
     ),
     (
         "[(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(1.0, 0.0, 0.0), (1.0, 1.0, 1.0)]",
         "",
-        "15: entity 7: definition: 0 control points along u degree 1; at least 2 are needed: add control points or lower the degree",
+        "15: entity 7: definition: 0 control points for u degree 1; at least 2 are needed: add control points or lower the degree",
     ),
     (
         "[(0.0, 0.0, 0.0), (0.0, 1.0, 0.0)], [(1.0, 0.0, 0.0), (1.0, 1.0, 1.0)]",

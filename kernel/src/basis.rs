@@ -96,9 +96,12 @@ fn interpolated(knots: &KnotVector, span: usize, u: f64) -> Option<usize> {
     }
 }
 
-/// Binomial coefficient as a floating-point number: exact up to degree 50.
+/// The binomial coefficient `n` over `k` as a floating-point number, 0 where `k` exceeds `n`: exact for `n` up to 50.
 #[must_use]
 pub fn binomial(n: usize, k: usize) -> f64 {
+    if k > n {
+        return 0.0;
+    }
     (0..k.min(n - k)).fold(1.0, |c, i| (c * (n - i) as f64 / (i + 1) as f64).round())
 }
 
@@ -129,6 +132,7 @@ mod tests {
     fn binomials_are_exact() {
         assert_eq!(binomial(50, 25), 126_410_606_437_752.0);
         assert_eq!(binomial(5, 0), 1.0);
+        assert_eq!(binomial(3, 4), 0.0);
         assert!((1..50).all(|n| (1..n).all(|k| binomial(n, k) == binomial(n - 1, k - 1) + binomial(n - 1, k))));
     }
 }

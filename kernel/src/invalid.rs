@@ -69,7 +69,7 @@ pub enum InvalidDefinition {
         degree: usize,
     },
     /// Fewer control points than degree + 1.
-    #[error("{points} control points along {along}degree {degree}; at least {} are needed: add control points or lower the degree", degree + 1)]
+    #[error("{points} control points for {along}degree {degree}; at least {} are needed: add control points or lower the degree", degree + 1)]
     TooFewPoints {
         /// Which parameter.
         along: Along,
@@ -154,7 +154,7 @@ pub enum InvalidDefinition {
     },
     /// The domain is so wide, or a span of it so narrow, that parameters overflow or cannot be told apart.
     #[error(
-        "the {along}knots run from {first} to {last}; their range must stay within 1e-100 to 1e100: rescale the knots"
+        "the {along}knots run from {first:e} to {last:e}; the length of their range must be within 1e-100 to 1e100: rescale the knots"
     )]
     KnotRange {
         /// Which parameter.
@@ -184,8 +184,10 @@ pub enum InvalidDefinition {
         /// Its value.
         weight: f64,
     },
-    /// The largest weight is more than 1e100 times the smallest.
-    #[error("weights reach from {smallest} to {largest}; their ratio may be at most 1e100: rescale the weights")]
+    /// The largest weight is more than 1e100 times the smallest, or a weight is outside 1e-100 to 1e100.
+    #[error(
+        "weights reach from {smallest:e} to {largest:e}; they must lie within 1e-100 to 1e100, their ratio at most 1e100: rescale the weights"
+    )]
     WeightRatio {
         /// The smallest weight.
         smallest: f64,

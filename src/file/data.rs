@@ -82,7 +82,7 @@ pub(super) fn read(text: &str) -> Result<Model, ModelError> {
 fn check_format(text: &str, outline: &Outline) -> Result<(), ModelError> {
     let at =
         |offset, problem| ModelError { line: line_at(text, offset), column: None, index: None, entity: None, problem };
-    if outline.is_empty {
+    if outline.is_empty && !outline.is_cut_off {
         return Err(at(0, InvalidModel::Empty));
     }
     let Some(range) = &outline.format else { return Ok(()) };

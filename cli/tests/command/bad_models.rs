@@ -99,7 +99,7 @@ fn curves_that_break_a_rule() {
     says_of_curve(&format!("degree: 26, knots: [0, 1, 2, 3], {points}"), "degree is 26; degrees from 1 to 25");
     says_of_curve(
         &format!("degree: 3, knots: [0, 0, 0, 0, 1, 1, 1], {points}"),
-        "3 control points along degree 3; at least 4 are needed",
+        "3 control points for degree 3; at least 4 are needed",
     );
     says_of_curve(
         &format!("degree: 2, knots: [0, 0, 1, 1, 1], {points}"),
@@ -160,7 +160,7 @@ fn surfaces_that_break_a_rule() {
     );
     says_of_surface(
         &format!("degree: (2, 1), {knots}, {net}"),
-        "2 control points along u degree 2; at least 3 are needed",
+        "2 control points for u degree 2; at least 3 are needed",
     );
     says_of_surface(
         &format!("degree: (1, 1), knots: ([0, 0, 1, 1], [0, 0, 1]), {net}"),
@@ -172,11 +172,11 @@ fn surfaces_that_break_a_rule() {
     );
     says_of_surface(
         &format!("degree: (1, 1), {knots}, control_points: []"),
-        "0 control points along u degree 1; at least 2 are needed",
+        "0 control points for u degree 1; at least 2 are needed",
     );
     says_of_surface(
         &format!("degree: (1, 1), {knots}, control_points: [[], []]"),
-        "0 control points along v degree 1; at least 2 are needed",
+        "0 control points for v degree 1; at least 2 are needed",
     );
     says_of_surface(
         &format!("degree: (1, 1), {knots}, {}", net.replace("(1, 1, 0)", "(1, 1, inf)")),
