@@ -58,6 +58,11 @@ pub use perpend_projection::{
     QueryError, QueryOptions, Scratch, Statistics, Ties,
 };
 
+/// The program of the README, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../README.md")]
+struct Readme;
+
 /// The programs of the guide, run as tests.
 #[cfg(doctest)]
 #[doc = include_str!("../docs/guide.md")]

@@ -358,6 +358,7 @@ fn a_file_that_was_cut_off_is_named_so() {
     }
     // the rest end before the first bracket or within a number, which is named as no number
     assert!(named * 100 > count * 98, "{named} of {count}");
+    assert_eq!(message("/* a comment that does not end"), format!("1:3: {cut_off}"));
     assert_eq!(read("cut.ron", &whole.as_bytes()[..300]), format!("FOLDER/cut.ron:11:56: entity 4: {cut_off}"));
 }
 
