@@ -18,7 +18,8 @@ pub(crate) struct Overview {
 }
 
 impl Model {
-    /// The entity nearest to `p` with its nearest point; none where nothing is within `max_distance`, or the model is empty.
+    /// The entity nearest to `p` with its nearest point; none where it is proven that nothing is within `max_distance`, or the
+    /// model is empty.
     ///
     /// Of entities at the same distance, the one with the lowest id. `lower_bound` holds for the whole model. Without a gap
     /// of its own, a query has each entity's: 1e-9 times its size.
@@ -58,6 +59,8 @@ impl Model {
         let query = Query { options: QueryOptions { max_distance: None, ..query.options }, ..*query };
         let (first, _) = tree.descend(query.point)?;
         let mut found = self.visit(first, &query, scratch);
+        // entities whose bound does not say that they are beyond the limit
+        let mut open: Vec<u32> = (found.1.lower_bound <= limit).then_some(first).into_iter().collect();
         let mut candidates: Vec<Candidate> = Vec::new();
         tree.nearer_than(query.point, square_above(found.1.distance), &mut candidates);
         candidates.retain(|candidate| candidate.item != first);
@@ -68,6 +71,7 @@ impl Model {
                 break; // the others are farther still
             }
             let other = self.visit(candidate.item, &query, scratch);
+            open.extend((other.1.lower_bound <= limit).then_some(candidate.item));
             let lower_bound = found.1.lower_bound.min(other.1.lower_bound);
             if (other.1.distance, other.0) < (found.1.distance, found.0) {
                 found = other;
@@ -79,7 +83,15 @@ impl Model {
         let reach = self.overview().bounds.reach().max(query.point.abs().max_element());
         let proven = (found.1.distance - 8.0 * f64::EPSILON * reach).max(0.0);
         found.1.lower_bound = found.1.lower_bound.min(proven);
-        (found.1.distance <= limit).then_some(found)
+        let is_found =
+            found.1.distance <= limit || open.iter().any(|item| self.may_be_within(*item, limit, &query, scratch));
+        is_found.then_some(found)
+    }
+
+    /// Whether an entity, asked with the limit, is not proven to lie beyond it.
+    fn may_be_within(&self, item: u32, limit: f64, query: &Query, scratch: &mut Scratch) -> bool {
+        let query = Query { options: QueryOptions { max_distance: Some(limit), ..query.options }, ..*query };
+        self.entities[item as usize].prepared().project(&query, scratch).is_some()
     }
 
     fn visit(&self, item: u32, query: &Query, scratch: &mut Scratch) -> (EntityId, FootPoint) {

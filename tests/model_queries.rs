@@ -1,6 +1,8 @@
 //! Queries of a model: alone, in batches, on any number of threads, to one entity and to all.
 
-use perpend::{CurveData, DVec3, EntityId, FootPoint, Model, Parameter, Place, QueryError, QueryOptions, SurfaceData};
+use perpend::{
+    CurveData, DVec3, EntityId, FootPoint, Model, NurbsCurve, Parameter, Place, QueryError, QueryOptions, SurfaceData,
+};
 use proptest::prelude::*;
 
 /// A model and its queries are used by many threads.
@@ -204,6 +206,30 @@ proptest! {
             let limited = model.nearest(p, &options).expect("a valid query");
             prop_assert_eq!(limited, (unlimited.1.distance <= limit).then_some(unlimited));
         }
+    }
+}
+
+/// Where a work bound leaves it open whether something is within the limit, none would be a claim without proof. On these
+/// curves, whose weights pull hard, a search without work stops short of the foot and beyond the limit.
+#[test]
+fn a_query_that_may_do_no_work_never_denies_what_is_within_the_maximum_distance() {
+    let curves: [([(f64, f64); 5], [f64; 5], (f64, f64)); 3] = [
+        ([(4.0, 7.0), (6.0, 10.0), (1.0, 8.0), (9.0, 2.0), (2.0, 2.0)], [1e2, 1.0, 1e1, 1e3, 1e3], (1.0, 9.0)),
+        ([(9.0, 2.0), (5.0, 1.0), (3.0, 5.0), (4.0, 7.0), (5.0, 3.0)], [1e3, 1.0, 1e1, 1e1, 1e4], (1.0, 2.0)),
+        ([(3.0, 8.0), (9.0, 4.0), (8.0, 9.0), (2.0, 9.0), (9.0, 4.0)], [1e2, 1.0, 1e4, 1e1, 1.0], (10.0, 5.0)),
+    ];
+    for (points, weights, p) in curves {
+        let points = points.map(|(x, y)| DVec3::new(x, y, 0.0)).to_vec();
+        let knots = [[0.0; 5], [1.0; 5]].concat();
+        let curve = NurbsCurve::new(4, knots, points, Some(weights.to_vec())).expect("valid");
+        let mut model = Model::new();
+        model.insert("pulled", curve).expect("valid");
+        let p = DVec3::new(p.0, p.1, 0.0);
+        let (_, foot) = model.nearest(p, &QueryOptions::default()).expect("a valid query").expect("an entity");
+        let limit = Some((1.0 + 1e-6) * foot.distance);
+        let options = QueryOptions { max_distance: limit, work: 0, ..QueryOptions::default() };
+        let (_, hasty) = model.nearest(p, &options).expect("a valid query").expect("the foot is within the limit");
+        assert!(hasty.lower_bound <= foot.distance && foot.lower_bound <= hasty.distance, "{hasty:?} and {foot:?}");
     }
 }
 
