@@ -213,7 +213,7 @@ proptest! {
 /// curves, whose weights pull hard, a search without work stops short of the foot and beyond the limit.
 #[test]
 fn a_query_that_may_do_no_work_never_denies_what_is_within_the_maximum_distance() {
-    let curves: [([(f64, f64); 5], [f64; 5], (f64, f64)); 3] = [
+    let curves = [
         ([(4.0, 7.0), (6.0, 10.0), (1.0, 8.0), (9.0, 2.0), (2.0, 2.0)], [1e2, 1.0, 1e1, 1e3, 1e3], (1.0, 9.0)),
         ([(9.0, 2.0), (5.0, 1.0), (3.0, 5.0), (4.0, 7.0), (5.0, 3.0)], [1e3, 1.0, 1e1, 1e1, 1e4], (1.0, 2.0)),
         ([(3.0, 8.0), (9.0, 4.0), (8.0, 9.0), (2.0, 9.0), (9.0, 4.0)], [1e2, 1.0, 1e4, 1e1, 1.0], (10.0, 5.0)),
