@@ -31,6 +31,7 @@ mod ties;
 
 use glam::DVec3;
 use perpend_kernel::{Aabb, Definition, Direction, cartesian};
+use smallvec::SmallVec;
 
 use self::certify::{Memory, Outcome, Part, certify};
 use self::form::{rounding_bound, rounding_factor};
@@ -226,13 +227,36 @@ impl Hierarchy {
         }
     }
 
-    /// Polishes the best foot in its prepared leaf and reads the answer off it.
+    /// Polishes the feet that were met and reads the answer off the least (distance, u, v).
     fn solution(&self, state: &mut State, coincidence: f64) -> Solution {
         let lower = state.tau().min(state.open) - self.reserve - 10.0 * ROUNDING * state.point.length();
         let (best, jet) = (state.best, state.best_jet);
-        let (polished, jet) = self.polish(&best, jet, state);
-        let tie = self.tie(state, &polished, &jet, coincidence);
-        Solution { tie, ..self.solution_at(&polished, lower.max(0.0), state) }
+        let mut winner = self.polish(&best, jet, state);
+        let others = self.others(&winner.0, coincidence, state);
+        for other in &others {
+            if self.rank(&other.0) < self.rank(&winner.0) {
+                winner = *other;
+            }
+        }
+        let tie = self.tie(&winner, &others, coincidence, state);
+        Solution { tie, ..self.solution_at(&winner.0, lower.max(0.0), state) }
+    }
+
+    /// The order of feet: the nearest first, then the one with the lower parameters.
+    fn rank(&self, foot: &Foot) -> (f64, f64, f64) {
+        let (u, v) = self.leaves[foot.leaf as usize].parameters(foot.s, foot.t);
+        (foot.distance, u, v)
+    }
+
+    /// The feet that were met elsewhere and are as near as the best one within the gap, polished.
+    fn others(&self, best: &Foot, coincidence: f64, state: &mut State) -> SmallVec<[(Foot, Jet); 2]> {
+        let near = best.distance + state.gap;
+        // two feet of one leaf that are this close in its parameters are one on its way to convergence
+        let close = |foot: &Foot| foot.leaf == best.leaf && (foot.s - best.s).abs().max((foot.t - best.t).abs()) < 1e-2;
+        let apart = |foot: &Foot| foot.distance <= near && foot.point.distance(best.point) > coincidence;
+        let mut met = std::mem::take(&mut state.met);
+        met.retain(|foot| apart(foot) && !close(foot));
+        met.iter().map(|foot| self.polish(foot, None, state)).filter(|(foot, _)| apart(foot)).collect()
     }
 
     /// A foot at the definition's parameters as they are reported.
@@ -296,26 +320,18 @@ impl Hierarchy {
         leaf.jet(s, t).cartesian().p.distance(p - leaf.origin)
     }
 
-    /// Whether a foot that was met, once polished, is as near as the best one and elsewhere.
+    /// What the other feet are to the best one.
     ///
-    /// The straight way between the parameters of two such feet tells: where it leads farther away than both, they are apart; where
-    /// the best one is flat and the whole way is as near to rounding, they belong to a continuum. Else the one that was met is on its way to the
+    /// The straight way between the parameters of two feet tells: where it leads farther away than both, they are apart; where the
+    /// best one is flat and the whole way is as near to rounding, they belong to a continuum. Else the other is on its way to the
     /// best one, or was kept from it by the border of its leaf.
-    fn tie(&self, state: &mut State, best: &Foot, jet: &Jet, coincidence: f64) -> Tie {
-        let mut met = std::mem::take(&mut state.met);
-        let near = best.distance + state.gap;
-        // two feet of one leaf that are this close in its parameters are one on its way to convergence
-        let close = |foot: &Foot| foot.leaf == best.leaf && (foot.s - best.s).abs().max((foot.t - best.t).abs()) < 1e-2;
-        met.retain(|foot| foot.distance <= near && foot.point.distance(best.point) > coincidence && !close(foot));
+    fn tie(&self, (best, jet): &(Foot, Jet), others: &[(Foot, Jet)], coincidence: f64, state: &State) -> Tie {
         let flat = self.is_flat(best, jet, state);
-        if flat {
-            met.extend(self.sides(best, state));
-        }
+        let sides = flat.then(|| self.sides(best, state)).into_iter().flatten();
         let mut tie = Tie::None;
         let noise = 64.0 * ROUNDING * (best.distance + 1.0);
-        for foot in &met {
-            let (foot, _) = self.polish(foot, None, state);
-            if foot.distance > near || foot.point.distance(best.point) <= coincidence {
+        for foot in others.iter().map(|(foot, _)| *foot).chain(sides) {
+            if foot.distance > best.distance + state.gap || foot.point.distance(best.point) <= coincidence {
                 continue;
             }
             let [a, b] = [best, &foot].map(|foot| self.leaves[foot.leaf as usize].parameters(foot.s, foot.t));
@@ -534,6 +550,28 @@ mod tests {
                     assert_eq!(bits(&plain), bits(&hinted));
                 }
             }
+        }
+    }
+
+    /// A piece that is closed without an evaluation, or that no proof needs, may still hold a foot as near.
+    #[test]
+    fn a_tie_with_another_piece_is_met() {
+        let at = |x: f64, y: f64| DVec3::new(x, y, 11.0);
+        let legs = |points: Vec<DVec3>| {
+            let n = points.len();
+            let knots = [vec![0.0], (0..n).map(|i| i as f64).collect(), vec![(n - 1) as f64]].concat();
+            Hierarchy::new(&NurbsCurve::new(1, knots, points, None).expect("valid").into(), &[])
+        };
+        let bent = legs(vec![at(0.0, 0.0), at(0.0, 2.0), at(2.0, 4.0)]);
+        let rails = legs(vec![at(0.0, 0.0), at(4.0, 0.0), at(4.0, 2.0), at(0.0, 2.0)]);
+        for (hierarchy, p) in [(bent, at(1.0, 1.585_786_437_626_905)), (rails, at(1.0, 1.0))] {
+            let query = Query::new(p, QueryOptions::default()).expect("finite");
+            let solution = hierarchy.project(&query, None, &mut Workspace::default()).expect("no limit");
+            assert_eq!((solution.tie, solution.distance < 1.0 + 1e-12), (Tie::Apart, true), "{solution:?}");
+            assert!(
+                solution.u < 1.0,
+                "of two feet at the same distance the one with the lower parameter: {solution:?}"
+            );
         }
     }
 }
