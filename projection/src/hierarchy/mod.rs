@@ -232,10 +232,10 @@ impl Hierarchy {
         let lower = state.tau().min(state.open) - self.reserve - 10.0 * ROUNDING * state.point.length();
         let (best, jet) = (state.best, state.best_jet);
         let mut winner = self.polish(&best, jet, state);
-        let others = self.others(&winner.0, coincidence, state);
-        for other in &others {
+        let mut others = self.others(&winner.0, coincidence, state);
+        for other in &mut others {
             if self.rank(&other.0) < self.rank(&winner.0) {
-                winner = *other;
+                std::mem::swap(other, &mut winner);
             }
         }
         let tie = self.tie(&winner, &others, coincidence, state);
