@@ -22,7 +22,7 @@ pub(super) fn ascending(what: &'static str, range: (f64, f64)) -> Result<(), Inv
     if range.0 < range.1 && range.0.is_finite() && range.1.is_finite() {
         Ok(())
     } else {
-        refuse(what, format_args!("({}, {})", range.0, range.1), "it must ascend between finite bounds")
+        refuse(what, format_args!("{range:?}"), "it must ascend between finite bounds")
     }
 }
 
@@ -32,8 +32,7 @@ pub(crate) fn sweep(what: &'static str, range: (f64, f64)) -> Result<(), Invalid
     if range.1 - range.0 <= TAU || is_full(range) {
         Ok(())
     } else {
-        let value = format_args!("({}, {})", range.0, range.1).to_string();
-        refuse(what, value, "it must span at most a full turn, 2π radians")
+        refuse(what, format_args!("{range:?}"), "it must span at most a full turn, 2π radians")
     }
 }
 

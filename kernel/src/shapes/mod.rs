@@ -2,7 +2,8 @@
 //!
 //! Each shape is plain data: build it by its fields or with `new`, which checks them; `to_nurbs` checks again and gives the NURBS.
 //! Angles are in radians. Surfaces run along the profile (height, latitude, tube) in u and around the axis, from `xdir` towards
-//! `ydir`, in v; every domain is `[0, 1]`. A full turn closes in the same bits. An arc has one rational quadratic span for each
+//! `ydir`, in v; every domain is `[0, 1]`. So the normal `S_u × S_v` of a cylinder, cone, sphere or torus points inward, that of a plane
+//! along its axis. A full turn closes in the same bits. An arc has one rational quadratic span for each
 //! 90 degrees or part of them (The NURBS Book, §7.5), so its parameter is not the angle but agrees with it at the joints.
 
 mod arc;

@@ -68,7 +68,7 @@ fn bad_shapes_are_named() {
     assert!(said(Circle::new(world, -1.0, turn)).contains("radius is -1; it must be positive"));
     assert!(said(Circle::new(world, 1.0, (0.0, 6.3))).contains("at most a full turn"));
     assert!(said(Circle::new(world, 1.0, (1.0, 1.0))).contains("must ascend"));
-    assert!(said(Circle::new(world, 1.0, (0.0, f64::NAN))).contains("sweep is (0, NaN)"));
+    assert!(said(Circle::new(world, 1.0, (0.0, f64::NAN))).contains("sweep is (0.0, NaN)"));
     assert!(said(Ellipse::whole(world, (1.0, 0.0))).contains("radius along ydir is 0"));
     assert!(said(Plane::new(world, (1.0, 0.0), (0.0, 1.0))).contains("width"));
     assert!(said(Cylinder::new(world, f64::INFINITY, (0.0, 1.0), turn)).contains("radius is inf"));
