@@ -8,10 +8,12 @@ use perpend_kernel::{Definition, Direction, KnotVector, NurbsCurve, NurbsSurface
 /// leaves of a closed net after a few operations.
 const SAME_POINT: f64 = 32.0 * f64::EPSILON;
 
-/// A derivative vanishes where it is below this share of size per parameter range.
+/// A derivative vanishes where it is below this share of size per parameter range: far above what rounding leaves of a zero, far
+/// below the slowest parametrisation that anybody designs.
 const VANISHING: f64 = 1e-9;
 
-/// The tangent turns at a break where its direction changes by more than this, in radians.
+/// The tangent turns at a break where its direction changes by more than this, in radians: a file with eight digits leaves less in a
+/// joint that was designed smooth, and no machine cuts a crease so flat. It names an answer's place and enters no bound.
 const TURN: f64 = 1e-7;
 
 /// The particular parameters of a definition.

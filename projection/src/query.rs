@@ -8,8 +8,9 @@ pub struct QueryOptions {
     /// The largest difference between `distance` and `lower_bound` that satisfies, in the model's unit; none: 1e-9 times the
     /// entity's size.
     pub gap: Option<f64>,
-    /// Only feet at most this far are wanted, in the model's unit; none: however far. Where the work bound stops the proof that
-    /// there is none, the nearest foot that was found is answered, with its bound, though it is farther.
+    /// Only feet at most this far are wanted, in the model's unit; none: however far. An answer of none is proven: nothing is
+    /// within, up to rounding (some 1e-13 of the size, and a few ulps of the query's distance). Where the work bound was met before
+    /// that proof, the foot that is known is answered with its bound, though it is farther.
     pub max_distance: Option<f64>,
     /// Feet farther than this from one another are different feet, in the model's unit; none: 1e-6 times the size.
     pub coincidence: Option<f64>,

@@ -224,7 +224,7 @@ impl Proof<'_> {
     /// at one `tau` need not be at another, since the weights vary. (A form that asks for more still proves what it proves: when the
     /// work is spent, it is kept.)
     fn is_stale(&self, state: &State) -> bool {
-        self.part.leaf.rational && state.work > 0 && state.tau() < self.formed - 0.5 * state.gap
+        self.part.leaf.rational && state.work > 0 && state.tau() < self.formed - 0.5 * state.goal.gap
     }
 
     /// The `tau` that the form speaks of.
@@ -320,11 +320,11 @@ impl Proof<'_> {
             iterations: 16,
             decrease: 1e-3 * state.margin(),
         };
-        let (upper, gap, limit, formed) = (state.best.distance, state.gap, state.limit, self.formed);
+        let (upper, goal, formed) = (state.best.distance, state.goal, self.formed);
         let mut closed = false;
         let found = newton::search(leaf, self.x, search, &mut state.statistics, |found| {
-            let tau = (found.distance.min(upper) - gap).max(0.0).min(limit);
-            if leaf.rational && tau < formed - 0.5 * gap {
+            let tau = goal.tau(found.distance.min(upper));
+            if leaf.rational && tau < formed - 0.5 * goal.gap {
                 return false; // the form will be made again
             }
             let tau = if leaf.rational { formed } else { tau };

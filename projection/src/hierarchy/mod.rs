@@ -40,7 +40,7 @@ use self::jet::Jet;
 use self::leaf::Leaf;
 use self::newton::{Domain, Found, Search};
 use self::piece::Piece;
-use self::state::{Foot, State};
+use self::state::{Foot, Goal, State};
 pub(crate) use self::ties::TieSet;
 use crate::query::Query;
 use crate::statistics::Statistics;
@@ -58,8 +58,8 @@ const REFINED_DEPTH: u32 = 30;
 /// How often a piece is halved at most in all.
 const DEEPEST: u32 = PREPARED_DEPTH + REFINED_DEPTH;
 
-/// How many leaves may come of splitting bent pieces; beyond, pieces stay whole.
-const MOST_LEAVES: usize = 200_000;
+/// How many control points the leaves may have that come of splitting bent pieces; beyond, pieces stay whole.
+const MOST_POINTS: usize = 4_000_000;
 
 /// Nearer to a leaf's border than this share of the leaf, a foot may be on it but for rounding.
 const NEAR_BORDER: f64 = 1e-6;
@@ -132,9 +132,9 @@ impl Hierarchy {
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
         let coincidence = self.coincidence(query);
         let solution = self.solution(&mut state, coincidence);
-        // a box left open may hold a point within the limit
-        let unproven = self.frame.length(state.open) <= limit;
-        (unproven || self.frame.length(solution.distance) <= limit).then_some(solution)
+        // none is a claim, too: it needs its proof
+        let beyond = self.frame.length(solution.distance) > limit && state.tau().min(state.open) >= state.goal.wanted;
+        (!beyond).then_some(solution)
     }
 
     fn coincidence(&self, query: &Query) -> f64 {
@@ -169,16 +169,22 @@ impl Hierarchy {
         let point = self.frame.enter(query.point);
         let leaf = &self.leaves[index as usize];
         let best = Part { leaf, index, within: Domain::WHOLE }.foot(found);
-        let asked = self.asked_gap(query);
+        // Whether anything is within a maximum distance is told as finely as by default, however wide the gap.
+        let finest = query.options.max_distance.map_or(f64::INFINITY, |_| 1e-9 * self.frame.size * self.frame.scale);
+        let asked = self.asked_gap(query).min(finest);
         // The proof is sought closer than asked by what rounding may take away again. Where that leaves less than half, or
         // the asked gap is finer than the forms can tell at this distance, the finest gap that they can tell is sought.
         // A fiftieth is kept for the foot's parameters, which are rounded after the proof.
         let left = 0.98 * asked - 2.0 * self.reserve - 20.0 * ROUNDING * point.length();
         let reachable = 40.0 * rounding_factor(leaf.degree) * ROUNDING * best.distance + 2.0 * self.reserve;
+        let wanted = query.options.max_distance.map_or(f64::INFINITY, |d| d * self.frame.scale);
         State {
             point,
-            gap: if left < 0.5 * asked { left.max(reachable) } else { left },
-            limit: query.options.max_distance.map_or(f64::INFINITY, |d| d * self.frame.scale + asked),
+            goal: Goal {
+                gap: if left < 0.5 * asked { left.max(reachable) } else { left },
+                wanted,
+                limit: wanted + asked,
+            },
             best,
             best_jet: Some(found.jet),
             met: smallvec::smallvec![best],
@@ -197,7 +203,7 @@ impl Hierarchy {
     fn walk(&self, state: &mut State, hint: f64, workspace: &mut Workspace) {
         let Workspace { memory, candidates } = workspace;
         // a hint of a point at distance h: the best will be at most h + gap away, and others as near within the gap count
-        let (mut from, mut to) = (0.0, squared(state.reach().min(hint + 2.0 * state.gap)));
+        let (mut from, mut to) = (0.0, squared(state.reach().min(hint + 2.0 * state.goal.gap)));
         while state.tau() > 0.0 {
             candidates.clear();
             state.statistics.boxes += self.tree.nearer_than(state.point, to, candidates);
@@ -250,7 +256,7 @@ impl Hierarchy {
 
     /// The feet that were met elsewhere and are as near as the best one within the gap, polished.
     fn others(&self, best: &Foot, coincidence: f64, state: &mut State) -> SmallVec<[(Foot, Jet); 2]> {
-        let near = best.distance + state.gap;
+        let near = best.distance + state.goal.gap;
         // two feet of one leaf that are this close in its parameters are one on its way to convergence
         let close = |foot: &Foot| foot.leaf == best.leaf && (foot.s - best.s).abs().max((foot.t - best.t).abs()) < 1e-2;
         let apart = |foot: &Foot| foot.distance <= near && foot.point.distance(best.point) > coincidence;
@@ -262,7 +268,7 @@ impl Hierarchy {
     /// A foot at the definition's parameters as they are reported.
     fn solution_at(&self, foot: &Foot, lower_bound: f64, state: &State) -> Solution {
         let leaf = &self.leaves[foot.leaf as usize];
-        let (s, t) = self.snap(foot);
+        let (s, t) = self.snap(foot, state);
         let (u, v) = leaf.parameters(s, t);
         let (s, t) = leaf.own_parameters(u, v);
         let c = leaf.jet(s, t).cartesian();
@@ -282,22 +288,30 @@ impl Hierarchy {
 
     /// A foot's parameters, on the border of its leaf where it lies beside it by no more than rounding: there are the edges,
     /// seams, poles and creases that `place` tells by the parameter.
-    fn snap(&self, foot: &Foot) -> (f64, f64) {
+    ///
+    /// Rounding moves a foot by more where the entity bends almost about the query: by the inverse of what its curvature leaves of the
+    /// Hessian.
+    fn snap(&self, foot: &Foot, state: &State) -> (f64, f64) {
         let leaf = &self.leaves[foot.leaf as usize];
-        let rounding = 16.0 * ROUNDING * (1.0 + foot.distance);
-        let mut at = (foot.s, foot.t);
-        let point = |(s, t): (f64, f64)| leaf.jet(s, t).cartesian().p + leaf.origin;
-        let border = |x: f64| {
-            if x > 0.0 && x < NEAR_BORDER {
-                0.0
-            } else if x < 1.0 && x > 1.0 - NEAR_BORDER {
-                1.0
-            } else {
-                x
-            }
+        let border = |x: f64| match x {
+            x if x < NEAR_BORDER => 0.0,
+            x if x > 1.0 - NEAR_BORDER => 1.0,
+            x => x,
         };
-        for snapped in [(border(at.0), at.1), (at.0, border(at.1)), (border(at.0), border(at.1))] {
-            if snapped != at && point(snapped).distance(foot.point) <= rounding {
+        let mut at = (foot.s, foot.t);
+        let corner = (border(at.0), border(at.1));
+        if corner == at {
+            return at;
+        }
+        let c = leaf.jet(at.0, at.1).cartesian();
+        let r = c.p - (state.point - leaf.origin);
+        let left = |first: DVec3, second: DVec3| {
+            let square = first.length_squared();
+            if square > 0.0 { ((square + r.dot(second)) / square).clamp(1e-6, 1.0) } else { 1.0 }
+        };
+        let rounding = 16.0 * ROUNDING * (1.0 + foot.distance) / left(c.ps, c.pss).min(left(c.pt, c.ptt));
+        for snapped in [(corner.0, at.1), (at.0, corner.1), corner] {
+            if snapped != at && leaf.jet(snapped.0, snapped.1).cartesian().p.distance(c.p) <= rounding {
                 at = snapped;
             }
         }
@@ -331,13 +345,13 @@ impl Hierarchy {
         let mut tie = Tie::None;
         let noise = 64.0 * ROUNDING * (best.distance + 1.0);
         for foot in others.iter().map(|(foot, _)| *foot).chain(sides) {
-            if foot.distance > best.distance + state.gap || foot.point.distance(best.point) <= coincidence {
+            if foot.distance > best.distance + state.goal.gap || foot.point.distance(best.point) <= coincidence {
                 continue;
             }
             let [a, b] = [best, &foot].map(|foot| self.leaves[foot.leaf as usize].parameters(foot.s, foot.t));
             let between = [0.25, 0.5, 0.75]
                 .map(|share| self.distance_at(state.point, a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1)));
-            if between.iter().any(|d| *d > foot.distance + noise) {
+            if between.iter().any(|d| *d > foot.distance.max(best.distance) + noise) {
                 tie = Tie::Apart;
             } else if flat && between.iter().all(|d| (d - best.distance).abs() <= noise) {
                 return Tie::Connected;
@@ -413,7 +427,7 @@ fn split_bent(pieces: Vec<Piece>) -> Vec<Piece> {
     let mut whole = Vec::with_capacity(pieces.len());
     let mut waiting: Vec<(Piece, u32)> = pieces.into_iter().rev().map(|piece| (piece, 0)).collect();
     while let Some((piece, depth)) = waiting.pop() {
-        let room = depth < PREPARED_DEPTH && whole.len() + waiting.len() < MOST_LEAVES;
+        let room = depth < PREPARED_DEPTH && (whole.len() + waiting.len()) * piece.net.len() < MOST_POINTS;
         match piece.wants_split().filter(|_| room) {
             None => whole.push(piece),
             Some(direction) => {

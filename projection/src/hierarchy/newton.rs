@@ -175,7 +175,22 @@ fn newton_step(
         (true, true) => return None,
         (true, false) => (0.0, step(gt, htt, tt)),
         (false, true) => (step(gs, hss, ss), 0.0),
-        (false, false) => step2((gs, gt), (hss, hst, htt), (ss, tt)),
+        (false, false) => {
+            let (ds, dt) = step2((gs, gt), (hss, hst, htt), (ss, tt));
+            let (to_s, to_t) = domain.clamp(s + ds, t + dt);
+            // the border stops a parameter: what is left of the slope there leads the other, else the step may lead uphill
+            let stopped_s = (to_s != s + ds).then(|| {
+                let ds = to_s - s;
+                (ds, domain.clamp(s, t + step(gt + hst * ds, htt, tt)).1 - t)
+            });
+            let stopped_t = (to_t != t + dt).then(|| {
+                let dt = to_t - t;
+                (domain.clamp(s + step(gs + hst * dt, hss, ss), t).0 - s, dt)
+            });
+            let model = |(a, b): &(f64, f64)| gs * a + gt * b + 0.5 * (hss * a * a + htt * b * b) + hst * a * b;
+            let stopped = [stopped_s, stopped_t].into_iter().flatten();
+            stopped.min_by(|a, b| model(a).total_cmp(&model(b))).unwrap_or((ds, dt))
+        }
     };
     Some(((ds, dt), -(gs * ds + gt * dt)))
 }

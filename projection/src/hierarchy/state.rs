@@ -19,14 +19,32 @@ pub(super) struct Foot {
     pub distance: f64,
 }
 
+/// What the proof of a query is to reach. All lengths are in the entity's own coordinates.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Goal {
+    /// How far below the upper bound the proof is sought: the asked gap less the reserves for rounding.
+    pub gap: f64,
+    /// Where nothing nearer than this is found, that is to be proven: the maximum distance.
+    pub wanted: f64,
+    /// Nothing farther needs a proof.
+    pub limit: f64,
+}
+
+impl Goal {
+    /// The distance that a proof must reach while the best point is at `distance`: nothing nearer than this. It falls with
+    /// `distance`.
+    pub(super) fn tau(&self, distance: f64) -> f64 {
+        let sought = (distance - self.gap).max(0.0);
+        let sought = if distance > self.wanted { sought.max(self.wanted) } else { sought };
+        sought.min(self.limit)
+    }
+}
+
 /// The state of one query, shared by all leaves. All lengths are in the entity's own coordinates.
 #[derive(Debug)]
 pub(super) struct State {
     pub point: DVec3,
-    /// How far below the upper bound the proof is sought: the asked gap less the reserves for rounding.
-    pub gap: f64,
-    /// Nothing farther is wanted.
-    pub limit: f64,
+    pub goal: Goal,
     /// The nearest point so far.
     pub best: Foot,
     /// Its evaluation, where it was made in the prepared leaf itself and not in a part of it.
@@ -43,25 +61,25 @@ pub(super) struct State {
 impl State {
     /// The distance that a proof must reach: nothing nearer than this.
     pub(super) fn tau(&self) -> f64 {
-        (self.best.distance - self.gap).max(0.0).min(self.limit)
+        self.goal.tau(self.best.distance)
     }
 
     /// How far a foot may be to count as one as near as the best.
     pub(super) fn reach(&self) -> f64 {
-        (self.best.distance + self.gap).min(self.limit)
+        (self.best.distance + self.goal.gap).min(self.goal.limit)
     }
 
     /// What the squared distance of a foot exceeds `tau²` by, at least, where it is worth proving.
     pub(super) fn margin(&self) -> f64 {
         let tau = self.tau();
-        let reach = self.best.distance.min(tau + self.gap);
+        let reach = self.best.distance.min(tau + self.goal.gap);
         (reach - tau) * (reach + tau)
     }
 
     /// Takes note of a point, and of its evaluation if that was made in the prepared leaf.
     pub(super) fn offer(&mut self, foot: Foot, jet: Option<Jet>) {
-        let apart = |met: &Foot| met.distance > self.best.distance + self.gap;
-        if foot.distance <= self.best.distance + self.gap {
+        let apart = |met: &Foot| met.distance > self.best.distance + self.goal.gap;
+        if foot.distance <= self.best.distance + self.goal.gap {
             if self.met.len() == MET {
                 self.met.retain(|met| !apart(met));
             }

@@ -59,7 +59,7 @@ impl Hierarchy {
         let mut nearest = self.project(query, None, workspace)?;
         let mut state = self.start(query);
         let coincidence = self.coincidence(query);
-        let reach = nearest.distance + state.gap.max(self.asked_gap(query));
+        let reach = nearest.distance + state.goal.gap.max(self.asked_gap(query));
         workspace.candidates.clear();
         self.tree.nearer_than(state.point, squared(reach) * (1.0 + 8.0 * ROUNDING), &mut workspace.candidates);
         workspace.candidates.sort_unstable_by_key(|candidate| candidate.item);
@@ -89,8 +89,15 @@ impl Hierarchy {
             true => nearest.clone(),
             false => Solution { tie: nearest.tie, ..self.solution_at(foot, nearest.lower_bound, &state) },
         };
-        let feet = feet.iter().map(solution).collect();
-        Some(TieSet { feet, continua, complete: state.work > 0, nearest })
+        let in_continuum = continua.iter().flatten().any(|b| holds(b.u, nearest.u) && holds(b.v, nearest.v));
+        let found = in_continuum || feet.iter().any(at_nearest);
+        let mut feet: Vec<Solution> = feet.iter().map(solution).collect();
+        // where the search lost the nearest foot itself, it may have lost others
+        if !found {
+            feet.push(nearest.clone());
+            feet.sort_by(|a, b| a.u.total_cmp(&b.u).then(a.v.total_cmp(&b.v)));
+        }
+        Some(TieSet { feet, continua, complete: found && state.work > 0, nearest })
     }
 
     /// Splits a leaf until every box is decided or narrow.
@@ -123,9 +130,14 @@ impl Hierarchy {
             let share = resolution / diameter;
             let wide = diameter > resolution && net::most(&cell.net) < threshold - cell.rounding;
             while !wide && reduce(&mut cell, depth / share) {}
-            if !wide && ((cell.m == 0 && cell.n == 0) || is_steep_valley(&cell, depth, share, &mut matrices)) {
+            let corner = cell.m == 0 && cell.n == 0;
+            let foot = (!wide && (corner || is_steep_valley(&cell, depth, share, &mut matrices))).then(|| {
                 let start = (0.5 * (cell.domain.s.0 + cell.domain.s.1), 0.5 * (cell.domain.t.0 + cell.domain.t.1));
-                feet.push(part.foot(&converge(leaf, x, cell.domain, start, state)));
+                part.foot(&converge(leaf, x, cell.domain, start, state))
+            });
+            // Newton's method may fail; then the box is split like the others
+            if let Some(foot) = foot.filter(|foot| corner || foot.distance <= reach) {
+                feet.push(foot);
             } else if wide || state.work == 0 || diameter <= resolution {
                 let (from, to) = (cell.domain.s, cell.domain.t);
                 let low = leaf.parameters(from.0, to.0);
@@ -145,20 +157,27 @@ impl Hierarchy {
         if set.iter().any(|u| u.wide) {
             return None;
         }
-        let mut feet = set.iter().map(|u| {
-            let leaf = &self.leaves[u.leaf as usize];
-            let start = (0.5 * (u.domain.s.0 + u.domain.s.1), 0.5 * (u.domain.t.0 + u.domain.t.1));
-            let found = converge(leaf, state.point - leaf.origin, Domain::WHOLE, start, state);
-            Part { leaf, index: u.leaf, within: Domain::WHOLE }.foot(&found)
-        });
-        let mut best = feet.next()?;
-        for foot in feet {
-            if foot.point.distance(best.point) > coincidence {
-                return None;
-            }
-            if foot.distance < best.distance {
-                best = foot;
-            }
+        let feet: Vec<Foot> = set
+            .iter()
+            .map(|u| {
+                let leaf = &self.leaves[u.leaf as usize];
+                let start = (0.5 * (u.domain.s.0 + u.domain.s.1), 0.5 * (u.domain.t.0 + u.domain.t.1));
+                let found = converge(leaf, state.point - leaf.origin, Domain::WHOLE, start, state);
+                Part { leaf, index: u.leaf, within: Domain::WHOLE }.foot(&found)
+            })
+            .collect();
+        let best = *feet.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;
+        let noise = 64.0 * ROUNDING * (best.distance + 1.0);
+        // the border of its leaf keeps a point from a foot beyond it
+        let resolution = coincidence.max(RESOLUTION);
+        let held = |foot: &Foot| {
+            let border = |x: f64| x <= 0.0 || x >= 1.0;
+            let surface = self.leaves[foot.leaf as usize].degree.1 > 0;
+            let near = foot.point.distance(best.point) <= 2.0 * resolution;
+            near && foot.distance > best.distance + noise && (border(foot.s) || (surface && border(foot.t)))
+        };
+        if feet.iter().any(|foot| foot.point.distance(best.point) > coincidence && !held(foot)) {
+            return None;
         }
         Some(best)
     }
@@ -174,21 +193,37 @@ impl Hierarchy {
     ) -> Vec<Foot> {
         let mut polished: Vec<((f64, f64), Foot)> = feet
             .into_iter()
-            .filter(|foot| foot.distance <= reach)
             .map(|foot| {
                 let (foot, _) = self.polish(&foot, None, state);
                 (self.leaves[foot.leaf as usize].parameters(foot.s, foot.t), foot)
             })
+            .filter(|(_, foot)| foot.distance <= reach)
             .collect();
-        polished.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let mut distinct: Vec<Foot> = Vec::new();
-        for ((u, v), foot) in polished {
-            let in_continuum = continua.iter().flatten().any(|b| holds(b.u, u) && holds(b.v, v));
-            if !in_continuum && distinct.iter().all(|other| other.point.distance(foot.point) > coincidence) {
-                distinct.push(foot);
+        // the nearest first: of feet in one valley, cut apart by the borders of leaves, it is the bottom
+        polished.sort_by(|(a, x), (b, y)| {
+            x.distance.total_cmp(&y.distance).then(a.0.total_cmp(&b.0)).then(a.1.total_cmp(&b.1))
+        });
+        let mut distinct: Vec<((f64, f64), Foot)> = Vec::new();
+        for (at, foot) in polished {
+            let in_continuum = continua.iter().flatten().any(|b| holds(b.u, at.0) && holds(b.v, at.1));
+            let known = |(other_at, other): &((f64, f64), Foot)| {
+                other.point.distance(foot.point) <= coincidence
+                    || !self.is_ridge_between(state.point, *other_at, at, foot.distance)
+            };
+            if !in_continuum && !distinct.iter().any(known) {
+                distinct.push((at, foot));
             }
         }
-        distinct
+        distinct.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
+        distinct.into_iter().map(|(_, foot)| foot).collect()
+    }
+
+    /// Whether the straight way between two parameters leads farther from `p` than `distance`, by more than rounding.
+    fn is_ridge_between(&self, p: DVec3, a: (f64, f64), b: (f64, f64), distance: f64) -> bool {
+        let noise = 64.0 * ROUNDING * (distance + 1.0);
+        [0.25, 0.5, 0.75]
+            .iter()
+            .any(|share| self.distance_at(p, a.0 + share * (b.0 - a.0), a.1 + share * (b.1 - a.1)) > distance + noise)
     }
 }
 
