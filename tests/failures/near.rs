@@ -139,3 +139,18 @@ fn places_do_not_depend_on_scale_or_offset() {
         assert_eq!(place(&Case::new(super::shapes::walls()), dvec3(2.0, 2.0, 0.0)), Place::Crease, "{scale}, {offset}");
     }
 }
+
+/// A point on the entity beside a knot is answered with itself, not with the knot, though that lies within the gap.
+#[test]
+fn beside_a_knot_the_foot_is_on_its_own_side() {
+    let points: Vec<DVec3> = (0..7).map(|i| dvec3(f64::from(i), f64::from(i * i % 5), f64::from(i % 3))).collect();
+    let case = Case::new(super::shapes::curve(3, points));
+    for knot in 1..4 {
+        for step in [1e-12, 1e-11, 1e-10, 1e-9, 1e-8, 1e-6] {
+            for u in [case.share(0, f64::from(knot) / 4.0) - step, case.share(0, f64::from(knot) / 4.0) + step] {
+                let foot = case.foot_at(case.at(u, 0.0), 0.0);
+                assert!(foot.distance <= 1e-14 * case.size(), "{u}: {foot:?}");
+            }
+        }
+    }
+}

@@ -6,7 +6,8 @@ use glam::{DVec3, dvec3};
 use perpend::{Multiplicity, Ties};
 
 use super::case::{Case, close, u};
-use super::shapes::{arc, bezier, circle, cone, cylinder, flat, plane, polyline, sphere, torus};
+use super::shapes::{arc, bezier, circle, cone, curve, cylinder, flat, plane, polyline, sphere, torus};
+use crate::common::random::Random;
 
 /// The parameters that the continua cover.
 fn covers(ties: &Ties, u: f64, v: f64) -> bool {
@@ -140,4 +141,67 @@ fn the_parameters_of_a_crossing_belong_to_one_foot_point() {
     assert!(ties.complete && ties.continua.is_empty(), "{ties:?}");
     // no two feet are closer than `coincidence`: the crossing counts once
     assert_eq!((ties.points.len(), ties.nearest.multiplicity), (1, Multiplicity::Unique), "{ties:?}");
+}
+
+/// A valley is wider within the gap than two feet may be close, so the piece beyond a knot once called its border another foot.
+#[test]
+fn a_foot_beside_a_knot_is_one_foot() {
+    let mut random = Random::new(777);
+    for round in 0..400 {
+        let degree = 2 + round % 3;
+        let points = (0..degree + 4).map(|i| i as f64 * DVec3::X + 0.5 * random.in_cube()).collect();
+        let case = Case::new(curve(degree, points));
+        for _ in 0..5 {
+            let knot = case.share(0, 0.25);
+            let u = knot + random.sign() * random.power(-8.0, -2.0);
+            let across = random.direction();
+            let tangent = case.at(u + 1e-6, 0.0) - case.at(u - 1e-6, 0.0);
+            let p = case.at(u, 0.0) + case.size() * random.power(-3.0, -1.5) * across.reject_from(tangent).normalize();
+            let ties = case.ties(p);
+            if ties.nearest.distance < 0.9 * case.at(u, 0.0).distance(p) {
+                continue; // another branch is nearer: its foot is not beside the knot
+            }
+            assert!(ties.complete && ties.continua.is_empty(), "{u} {p}: {ties:?}");
+            assert_eq!(ties.points.len(), 1, "degree {degree}, u = {u}, {p}: {ties:?}");
+        }
+    }
+}
+
+/// A step that leaves the box in one parameter need not lead downhill in the other: the search stuck at a border that is no
+/// minimum, and the only foot was lost while the search called itself complete.
+#[test]
+fn the_only_foot_is_not_lost_at_a_border() {
+    let weights = [
+        [1.1922667614476072, 5.1130607034174265, 2.484797635477261],
+        [7.556271946550355, 8.833310073504459, 1.6090744938963317],
+    ];
+    let points = [
+        [
+            dvec3(-0.10140079539134843, 0.48361420714276876, 0.43308307859176254),
+            dvec3(0.535469503332352, 1.3758060298515904, 0.3868495767804294),
+            dvec3(-0.27855974075142087, 2.6590783173263146, 0.6023403877934418),
+        ],
+        [
+            dvec3(0.3635209185984478, 0.2764510895541003, 0.13240336225502156),
+            dvec3(0.8683853750190522, 1.0278905993226684, 0.45329294363934786),
+            dvec3(1.4592736444496546, 1.6640425436863358, 0.6097975599109741),
+        ],
+    ];
+    let knots = (vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0]);
+    let points = points.map(|row| row.to_vec()).to_vec();
+    let weights = weights.map(|row| row.to_vec()).to_vec();
+    let surface = perpend::NurbsSurface::new((1, 2), knots, points, Some(weights)).expect("valid");
+    let ties = Case::new(surface).ties(dvec3(-0.27856230814316935, 2.6592064492241443, 0.6004205827601131));
+    assert!(ties.complete && ties.continua.is_empty(), "{ties:?}");
+    assert_eq!((ties.points.len(), ties.points[0]), (1, ties.nearest), "{ties:?}");
+}
+
+/// Beside the centre of a circle rounding moves a foot by more; one at the seam was taken off it.
+#[test]
+fn a_foot_at_the_seam_is_on_it_also_near_the_centre() {
+    let case = Case::new(circle(60.0));
+    for x in [0.01, 0.1, 0.5, 1.0, 2.0, 10.0, 59.0, 61.0, 600.0] {
+        let foot = case.foot_at(x * DVec3::X, (x - 60.0_f64).abs());
+        assert_eq!((u(&foot), foot.place), (0.0, perpend::Place::Seam), "x = {x}: {foot:?}");
+    }
 }

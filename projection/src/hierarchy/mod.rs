@@ -64,12 +64,17 @@ const MOST_POINTS: usize = 4_000_000;
 /// Nearer to a leaf's border than this share of the leaf, a foot may be on it but for rounding.
 const NEAR_BORDER: f64 = 1e-6;
 
+/// How many borders a foot is followed across: it is within the gap of the nearest, so that the next leaf or the one after has it.
+const CROSSINGS: u32 = 4;
+
 /// An entity's leaves and their tree.
 #[derive(Debug)]
 pub(crate) struct Hierarchy {
     pub(crate) frame: Frame,
     leaves: Vec<Leaf>,
     tree: BoxTree,
+    /// The definition's parameters, in u and in v.
+    domain: [(f64, f64); 2],
     /// How far rounding may have moved the entity on its way into the leaves: `dg`.
     reserve: f64,
 }
@@ -121,7 +126,11 @@ impl Hierarchy {
         }
         let leaves: Vec<Leaf> = split_bent(pieces).into_iter().map(|piece| Leaf::new(piece, rational)).collect();
         let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
-        Self { frame, tree: BoxTree::new(&boxes), leaves, reserve: Frame::reserve(degree, reach) }
+        let whole = |range: fn(&Leaf) -> (f64, f64)| {
+            leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))
+        };
+        let domain = [whole(|leaf| leaf.u), whole(|leaf| leaf.v)];
+        Self { frame, tree: BoxTree::new(&boxes), leaves, domain, reserve: Frame::reserve(degree, reach) }
     }
 
     /// The nearest point of the entity; none where it is proven that nothing is within the query's `max_distance`. `hint` is any point of the entity.
@@ -238,6 +247,7 @@ impl Hierarchy {
         let lower = state.tau().min(state.open) - self.reserve - 10.0 * ROUNDING * state.point.length();
         let (best, jet) = (state.best, state.best_jet);
         let mut winner = self.polish(&best, jet, state);
+        self.cross_borders(&mut winner, state);
         let mut others = self.others(&winner.0, coincidence, state);
         for other in &mut others {
             if self.rank(&other.0) < self.rank(&winner.0) {
@@ -326,10 +336,43 @@ impl Hierarchy {
         (Part { leaf, index: foot.leaf, within: Domain::WHOLE }.foot(&found), found.jet)
     }
 
+    /// Follows a foot out of its leaf: where it lies on a border with another leaf, the distance may go on falling there. The proof
+    /// does not ask for that, as it is less than the gap; the foot's place does.
+    fn cross_borders(&self, foot: &mut (Foot, Jet), state: &mut State) {
+        let mut neighbours = Vec::new();
+        for _ in 0..CROSSINGS {
+            let here = foot.0;
+            let leaf = &self.leaves[here.leaf as usize];
+            let inner = |x: f64, (from, to): (f64, f64), (first, last): (f64, f64)| {
+                (x == 0.0 && from > first) || (x == 1.0 && to < last)
+            };
+            let surface = leaf.degree.1 > 0;
+            let crosses = inner(here.s, leaf.u, self.domain[0]) || (surface && inner(here.t, leaf.v, self.domain[1]));
+            if !crosses {
+                return;
+            }
+            let (u, v) = leaf.parameters(here.s, here.t);
+            neighbours.clear();
+            state.statistics.boxes += self.tree.nearer_than(here.point, squared(1e-9), &mut neighbours);
+            for neighbour in &neighbours {
+                let other = &self.leaves[neighbour.item as usize];
+                if neighbour.item != here.leaf && holds(other.u, u) && holds(other.v, v) {
+                    let (s, t) = other.own_parameters(u, v);
+                    let there = self.polish(&Foot { leaf: neighbour.item, s, t, ..here }, None, state);
+                    if there.0.distance < foot.0.distance {
+                        *foot = there;
+                    }
+                }
+            }
+            if foot.0.leaf == here.leaf {
+                return;
+            }
+        }
+    }
+
     /// The distance from the query to the entity at parameters of the definition.
     fn distance_at(&self, p: DVec3, u: f64, v: f64) -> f64 {
-        let holds = |leaf: &&Leaf| leaf.u.0 <= u && u <= leaf.u.1 && leaf.v.0 <= v && v <= leaf.v.1;
-        let leaf = self.leaves.iter().find(holds).unwrap_or(&self.leaves[0]);
+        let leaf = self.leaves.iter().find(|leaf| holds(leaf.u, u) && holds(leaf.v, v)).unwrap_or(&self.leaves[0]);
         let (s, t) = leaf.own_parameters(u, v);
         leaf.jet(s, t).cartesian().p.distance(p - leaf.origin)
     }
@@ -444,6 +487,10 @@ fn normal_direction(a: DVec3, b: DVec3) -> DVec3 {
     let n = a.cross(b);
     let (length, of) = (n.length(), a.length() * b.length());
     if length > 1e-12 * of && of > 0.0 { n / length } else { DVec3::ZERO }
+}
+
+fn holds((from, to): (f64, f64), x: f64) -> bool {
+    from <= x && x <= to
 }
 
 fn squared(x: f64) -> f64 {

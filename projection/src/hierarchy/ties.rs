@@ -17,7 +17,7 @@ use super::form::rounding_bound;
 use super::leaf::Leaf;
 use super::newton::{self, Domain, Found, Search};
 use super::state::{Foot, State};
-use super::{Hierarchy, ROUNDING, Solution, Tie, Workspace, net, squared};
+use super::{Hierarchy, ROUNDING, Solution, Tie, Workspace, holds, net, squared};
 use crate::answer::ParameterBox;
 use crate::query::Query;
 
@@ -310,10 +310,6 @@ fn is_longer_down(leaf: &Leaf, domain: &Domain) -> bool {
     let s = at(domain.s.0, middle.1).distance_squared(at(domain.s.1, middle.1));
     let t = at(middle.0, domain.t.0).distance_squared(at(middle.0, domain.t.1));
     s >= t
-}
-
-fn holds((from, to): (f64, f64), x: f64) -> bool {
-    from <= x && x <= to
 }
 
 /// Groups boxes that touch.
