@@ -10,6 +10,7 @@ mod common;
 
 use std::collections::HashMap;
 use std::path::Path;
+use std::process::Command;
 
 use common::corpus::{self, Row};
 use common::judgement::{EPSILON, is_certified, is_false_bound};
@@ -25,11 +26,31 @@ struct Real {
     oracles: HashMap<u64, Oracle>,
 }
 
+/// The model as the tool beside the models writes it: a RON file, ids kept. None where the tool or its interpreter is absent.
+fn from_ron(folder: &Path) -> Option<Model> {
+    let tool = folder.parent()?.parent()?.join("tools/to_ron.py");
+    let file = Path::new(env!("CARGO_TARGET_TMPDIR")).join(folder.file_name()?).with_extension("ron");
+    let done = Command::new("python3").arg(tool).arg(folder.join("corpus.json")).arg(&file).status().ok()?;
+    done.success().then(|| Model::read(&file).expect("the tool writes models"))
+}
+
 fn load(folder: &Path, wanted: &[Row]) -> Real {
-    let mut real = Real { model: Model::new(), ids: HashMap::new(), oracles: HashMap::new() };
+    let model = from_ron(folder);
+    if model.is_none() {
+        eprintln!("{}: read from its JSON, since tools/to_ron.py did not run", folder.display());
+    }
+    let ron = model.is_some();
+    let mut real = Real { model: model.unwrap_or_default(), ids: HashMap::new(), oracles: HashMap::new() };
     for entry in corpus::entities(&folder.join("corpus.json")) {
         let definition = entry.shape.definition();
-        let id = real.model.insert(&entry.name, definition).expect("a valid entity");
+        let id = if ron {
+            let id = EntityId::new(entry.id);
+            let read = real.model.entity(id).expect("ids are kept");
+            assert_eq!(**read.definition(), definition, "entity {id} of {}", folder.display());
+            id
+        } else {
+            real.model.insert(&entry.name, definition).expect("a valid entity")
+        };
         if wanted.iter().any(|row| row.entity == entry.id) {
             real.oracles.insert(entry.id, Oracle::new(entry.shape));
         }
