@@ -7,6 +7,7 @@ pub mod adversaries;
 pub mod corpus;
 pub mod double_double;
 pub mod judgement;
+pub mod kinds;
 pub mod oracle;
 pub mod points;
 pub mod random;

@@ -1,0 +1,165 @@
+//! The axis about which rows of points are turned.
+
+use glam::DVec3;
+
+use super::least_squares::least_squares;
+
+/// An axis.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Axis {
+    pub(super) centre: DVec3,
+    pub(super) axis: DVec3,
+}
+
+/// What is left to fit at a point: the residual and its derivatives by two turns and two shifts of the axis.
+type Equation = [f64; 5];
+
+/// The axis of rows of points: `rows[b][a]` lies on circle `b` at angle `a`.
+///
+/// It starts at the circle through the three points of a row that are farthest from one line. Gauss–Newton steps then fit direction and
+/// place: radius and height are the same along a row, and, where the start shows meridians in planes with the axis, angles
+/// are the same in all rows. None where no row is bent.
+pub(super) fn fit(rows: &[Vec<DVec3>]) -> Option<Axis> {
+    let mut axis = rows.iter().filter_map(|row| through(row)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
+    let mut meridians = false;
+    for round in 0..16 {
+        let equations = axis.equations(rows, meridians);
+        let (u, v) = axis.axis.any_orthonormal_pair();
+        let Some(x) = step(&equations) else { break };
+        let turned = axis.axis + x[0] * u + x[1] * v;
+        let moved = Axis { centre: axis.centre + x[2] * u + x[3] * v, axis: turned.normalize() };
+        if !(moved.centre.is_finite() && moved.axis.is_finite()) {
+            break;
+        }
+        let radius = axis.largest_radius(rows);
+        let small = x[0].hypot(x[1]) < 1e-9 && x[2].hypot(x[3]) < 1e-9 * radius;
+        axis = moved;
+        if small && !meridians && rows.len() > 1 {
+            meridians = axis.has_meridians(rows);
+            if !meridians {
+                break;
+            }
+        } else if small && round > 3 {
+            break;
+        }
+    }
+    Some(axis)
+}
+
+impl Axis {
+    /// Mean height and mean radius of a row.
+    pub(super) fn mean(&self, row: &[DVec3]) -> (f64, f64) {
+        let n = row.len() as f64;
+        let height = row.iter().map(|p| (*p - self.centre).dot(self.axis)).sum::<f64>() / n;
+        (height, row.iter().map(|p| self.across(*p).length()).sum::<f64>() / n)
+    }
+
+    fn across(&self, p: DVec3) -> DVec3 {
+        let arm = p - self.centre;
+        arm - arm.dot(self.axis) * self.axis
+    }
+
+    fn largest_radius(&self, rows: &[Vec<DVec3>]) -> f64 {
+        rows.iter().flatten().map(|p| self.across(*p).length()).fold(0.0, f64::max)
+    }
+
+    /// The direction across the axis in which the points of angle `a` lie, and how far any of them is beside it.
+    fn meridian(&self, rows: &[Vec<DVec3>], a: usize) -> (DVec3, f64) {
+        let sum: DVec3 = rows.iter().map(|row| self.across(row[a])).sum();
+        let towards = sum.normalize_or_zero();
+        let beside = rows.iter().map(|row| self.axis.cross(towards).dot(self.across(row[a])).abs());
+        (towards, beside.fold(0.0, f64::max))
+    }
+
+    fn has_meridians(&self, rows: &[Vec<DVec3>]) -> bool {
+        let size = rows.iter().flatten().map(|p| p.distance(rows[0][0])).fold(0.0, f64::max);
+        (0..rows[0].len()).all(|a| self.meridian(rows, a).1 <= 1e-6 * size)
+    }
+
+    fn equations(&self, rows: &[Vec<DVec3>], meridians: bool) -> Vec<Equation> {
+        let (u, v) = self.axis.any_orthonormal_pair();
+        let least = 1e-6 * self.largest_radius(rows);
+        let mut all = Vec::new();
+        for row in rows {
+            let (mut radial, mut axial) = (Vec::new(), Vec::new());
+            for p in row {
+                let arm = *p - self.centre;
+                let (z, across) = (arm.dot(self.axis), self.across(*p));
+                let rho = across.length();
+                axial.push([z, arm.dot(u), arm.dot(v), 0.0, 0.0]);
+                if rho > least {
+                    let out = across / rho;
+                    let (x, y) = (out.dot(u), out.dot(v));
+                    radial.push([rho, -z * x, -z * y, -x, -y]);
+                }
+            }
+            for mut group in [radial, axial] {
+                let ones = vec![1.0; group.len()];
+                eliminate(&mut group, &ones);
+                all.extend(group);
+            }
+        }
+        if meridians {
+            for a in 0..rows[0].len() {
+                let side = self.axis.cross(self.meridian(rows, a).0);
+                let (x, y) = (side.dot(u), side.dot(v));
+                let (mut group, mut radii) = (Vec::new(), Vec::new());
+                for row in rows {
+                    let arm = row[a] - self.centre;
+                    let z = arm.dot(self.axis);
+                    group.push([side.dot(arm), -z * x, -z * y, -x, -y]);
+                    radii.push(self.across(row[a]).length());
+                }
+                eliminate(&mut group, &radii);
+                all.extend(group);
+            }
+        }
+        all
+    }
+}
+
+/// Takes an unknown off a group of equations, in each of which it stands with its share.
+fn eliminate(group: &mut [Equation], shares: &[f64]) {
+    let norm: f64 = shares.iter().map(|s| s * s).sum();
+    if norm == 0.0 {
+        return;
+    }
+    for column in 0..5 {
+        let mean = group.iter().zip(shares).map(|(e, s)| e[column] * s).sum::<f64>() / norm;
+        group.iter_mut().zip(shares).for_each(|(e, s)| e[column] -= mean * s);
+    }
+}
+
+/// The step that makes the residuals least.
+fn step(equations: &[Equation]) -> Option<[f64; 4]> {
+    let column = |k: usize| equations.iter().map(|e| e[k]).collect::<Vec<f64>>();
+    let x = least_squares((1..5).map(column).collect(), column(0))?;
+    Some([-x[0], -x[1], -x[2], -x[3]])
+}
+
+/// The axis of the circle through three points of a row that span the largest triangle with its first one, and the size of
+/// that triangle; none where all lie on a line.
+pub(super) fn through(row: &[DVec3]) -> Option<(Axis, f64)> {
+    let a = row[0];
+    let far = |p: &DVec3| p.distance_squared(a);
+    let size = row.iter().map(far).fold(0.0, f64::max).sqrt();
+    let mut best = (0.0, a, a);
+    for (i, b) in row.iter().enumerate() {
+        for c in &row[i + 1..] {
+            let area = (*b - a).cross(*c - a).length();
+            if area > best.0 {
+                best = (area, *b, *c);
+            }
+        }
+    }
+    let (area, b, c) = best;
+    if area <= 1e-9 * size * size {
+        return None;
+    }
+    let (b, c) = (b - a, c - a);
+    let normal = b.cross(c);
+    let centre =
+        (c.length_squared() * normal.cross(b) - b.length_squared() * normal.cross(c)) / (2.0 * normal.length_squared());
+    let axis = Axis { centre: a + centre, axis: normal.normalize() };
+    (axis.centre.is_finite() && axis.axis.is_finite()).then_some((axis, area))
+}

@@ -1,0 +1,102 @@
+//! Recognition: what shape a definition is, proved by its control points.
+//!
+//! A candidate's parameters come from samples and least squares; whether it is accepted is decided by a bound of the distance
+//! between the two sets of points (both ways: every point of the definition is that near to the shape within its ranges, and
+//! every point of the shape to the definition), which is formed from control points and widened by its own rounding. A surface
+//! of a quadric is taken apart into the arc that turns and the profile that is turned, so that all proofs are proofs of
+//! curves.
+
+mod along;
+mod axis;
+mod cone;
+mod conic;
+mod curves;
+mod cylinder;
+mod ellipse;
+mod extrusion;
+mod least_squares;
+mod line;
+mod measure;
+mod plane;
+mod proof;
+mod refuted;
+mod revolution;
+mod ruled;
+mod sphere;
+mod torus;
+mod turned;
+mod weights;
+
+use perpend_kernel::{Definition, Direction, NurbsSurface};
+
+pub use refuted::Refuted;
+
+use crate::classification::Kind;
+use crate::item::{Basis, Item};
+
+/// The deviation at which a class is accepted unless the caller says otherwise: 1e-10 of the size, and 16 ulps of the largest
+/// coordinate, below which the definition's own numbers cannot tell one shape from another.
+#[must_use]
+pub fn default_tolerance(definition: &Definition) -> f64 {
+    1e-10 * definition.size() + 16.0 * f64::EPSILON * definition.reach()
+}
+
+/// The class of a definition: the most special one that it is proved to be within `tolerance`, else [`Kind::FreeForm`].
+///
+/// The basis is [`Basis::Proved`]; its gap bounds the distance between the definition and the shape within its ranges, both
+/// ways, rounding included. Of a general revolution, extrusion or ruled surface, it bounds the distance to the surface that
+/// the definition's own profile or boundary curves make.
+///
+/// Angles of a recognised shape start at 0 and ascend, but for a cone, whose axis runs from its apex: there they may descend.
+#[must_use]
+pub fn recognise(definition: &Definition, tolerance: f64) -> Item<Kind> {
+    let found = match definition {
+        Definition::NurbsCurve(curve) => {
+            let candidates: [fn(&_) -> Option<Kind>; 3] = [line::candidate, conic::circle, ellipse::candidate];
+            candidates.iter().find_map(|candidate| accept(candidate(curve)?, definition, tolerance))
+        }
+        Definition::NurbsSurface(surface) => of_surface(surface, definition, tolerance),
+    };
+    let (value, gap) = found.unwrap_or((Kind::FreeForm, 0.0));
+    Item { value, basis: Basis::Proved { gap }, tolerance, of: definition.fingerprint() }
+}
+
+fn of_surface(surface: &NurbsSurface, definition: &Definition, tolerance: f64) -> Option<(Kind, f64)> {
+    let directions = [Direction::U, Direction::V];
+    let accept = |kind: Option<Kind>| accept(kind?, definition, tolerance);
+    if let Some(found) = plane::candidates(surface).into_iter().find_map(|kind| accept(Some(kind))) {
+        return Some(found);
+    }
+    let turned = directions.map(|angular| revolution::pose(surface, angular, tolerance));
+    for pose in turned.iter().flatten() {
+        let candidates = [cylinder::candidate, cone::candidate, sphere::candidate, torus::candidate];
+        if let Some(found) = candidates.iter().find_map(|candidate| accept(candidate(pose))) {
+            return Some(found);
+        }
+    }
+    directions
+        .iter()
+        .find_map(|along| accept(extrusion::candidate(surface, *along)))
+        .or_else(|| turned.iter().flatten().find_map(|pose| accept(revolution::candidate(pose))))
+        .or_else(|| directions.iter().find_map(|ruling| accept(Some(Kind::Ruled { ruling: *ruling }))))
+}
+
+fn accept(kind: Kind, definition: &Definition, tolerance: f64) -> Option<(Kind, f64)> {
+    let gap = proof::gap(&kind, definition).ok().flatten()?;
+    (gap <= tolerance).then_some((kind, gap))
+}
+
+/// Proves that a definition is of a stated class within `tolerance`, and gives the proven gap, as for [`recognise`].
+///
+/// Everything is free form.
+///
+/// # Errors
+///
+/// The class does not fit the definition (a circle over a surface), its parameters break the conventions of [`Kind`], or the
+/// proven deviation is above the tolerance.
+pub fn prove(kind: &Kind, definition: &Definition, tolerance: f64) -> Result<f64, Refuted> {
+    match proof::gap(kind, definition)? {
+        Some(gap) if gap <= tolerance => Ok(gap),
+        bound => Err(Refuted::Deviates { measured: measure::deviation(kind, definition), bound, tolerance }),
+    }
+}

@@ -1,0 +1,62 @@
+//! Surfaces of revolution.
+
+use glam::DVec3;
+use perpend_kernel::{Direction, NurbsSurface};
+
+use super::axis;
+use super::conic::full_if_closed;
+use super::curves::parameters;
+use super::turned::{Turned, UNIT, other};
+use crate::classification::Kind;
+
+/// A surface as it turns about an axis that fits it.
+pub(super) struct Pose {
+    pub(super) centre: DVec3,
+    pub(super) axis: DVec3,
+    pub(super) xdir: DVec3,
+    pub(super) sweep: (f64, f64),
+    pub(super) angular: Direction,
+    pub(super) turned: Turned,
+    /// Lengths below this are rounding or within the tolerance.
+    pub(super) slack: f64,
+}
+
+/// The axis about which a surface turns along `angular`, ascending; none where it does not within `tolerance`.
+pub(super) fn pose(surface: &NurbsSurface, angular: Direction, tolerance: f64) -> Option<Pose> {
+    let bounds = surface.control_box();
+    let origin = bounds.centre();
+    let rows: Vec<Vec<DVec3>> = parameters(surface.domain(other(angular)), 6)
+        .map(|t| {
+            let at = |s| if angular == Direction::U { surface.point(s, t) } else { surface.point(t, s) };
+            parameters(surface.domain(angular), 16).map(|s| at(s) - origin).collect()
+        })
+        .collect();
+    let fitted = axis::fit(&rows)?;
+    // the point of the axis that is nearest to the surface's middle
+    let centre = origin + (fitted.centre - fitted.centre.dot(fitted.axis) * fitted.axis);
+    let slack = 1e-2 * tolerance.min(1e-9 * bounds.diagonal() + 16.0 * f64::EPSILON * bounds.reach());
+    let about = |axis| {
+        let (turned, xdir) = Turned::about(surface, angular, centre, axis, None)?;
+        if turned.deviation > tolerance {
+            return None;
+        }
+        let sweep = UNIT.angles(&turned.arc)?.range();
+        let sweep = full_if_closed(sweep, slack / turned.radius);
+        Some(Pose { centre, axis, xdir, sweep, angular, turned, slack })
+    };
+    let pose = about(fitted.axis)?;
+    if pose.sweep.1 < pose.sweep.0 { about(-fitted.axis) } else { Some(pose) }
+}
+
+/// The surface of revolution.
+pub(super) fn candidate(pose: &Pose) -> Option<Kind> {
+    let sweep = pose.sweep.1 - pose.sweep.0;
+    Some(Kind::Revolution { origin: pose.centre, axis: pose.axis, sweep, angular: pose.angular })
+}
+
+/// Bound of the distance from the surface that the iso-curve at the start makes when it is turned.
+pub(super) fn gap(surface: &NurbsSurface, angular: Direction, origin: DVec3, axis: DVec3, sweep: f64) -> Option<f64> {
+    let (turned, _) = Turned::about(surface, angular, origin, axis, None)?;
+    // the iso-curve itself is as far from the profile as the surface
+    Some(turned.deviation + turned.gap((0.0, sweep))?)
+}
