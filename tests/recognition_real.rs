@@ -43,8 +43,8 @@ fn parameters(kind: &Kind, truth: &Value, size: f64) -> (f64, f64) {
             (off.max(direction(axis, "axis")), slender(turn(sweep)))
         }
         Kind::Plane { origin, normal, .. } => {
-            let there = vector(&truth["axis"]).normalize();
-            (direction(normal, "axis").max((origin - vector(&truth["origin"])).dot(there).abs()), 1.0)
+            let there = vector(&truth["normal"]).normalize();
+            (direction(normal, "normal").max((origin - vector(&truth["origin"])).dot(there).abs()), 1.0)
         }
         Kind::Cylinder { centre, axis, radius, sweep, .. } => {
             (line(centre, axis).max((radius - number("radius")).abs()), slender(turn(sweep)))
@@ -58,7 +58,8 @@ fn parameters(kind: &Kind, truth: &Value, size: f64) -> (f64, f64) {
             (off, slender(turn(sweep).min(turn(latitude))))
         }
         Kind::Torus { centre, axis, major_radius, minor_radius, sweep, section, .. } => {
-            let radii = (major_radius - number("major_radius")).abs().max((minor_radius - number("minor_radius")).abs());
+            let radii =
+                (major_radius - number("major_radius")).abs().max((minor_radius - number("minor_radius")).abs());
             let off = centre.distance(vector(&truth["origin"])).max(direction(axis, "axis")).max(radii);
             (off, slender(turn(sweep).min(turn(section))))
         }
@@ -116,9 +117,13 @@ fn recognised(folder: &str) {
             worst = worst.max(off / allowed);
             if off > allowed {
                 let params = &truth["origin_params"];
-                failures.push(format!("entity {}: {off:e} off, {allowed:e} allowed: {:?}, {params}", entry.id, item.value));
+                failures
+                    .push(format!("entity {}: {off:e} off, {allowed:e} allowed: {:?}, {params}", entry.id, item.value));
             }
         } else {
+            if origin == "revolution" {
+                eprintln!("{} {:?} {:e}", entry.id, item.value, gap(&item));
+            }
             *others.entry(format!("{origin} -> {found}")).or_insert(0) += 1;
         }
     }

@@ -7,6 +7,7 @@ use perpend_kernel::{NurbsCurve, binomial};
 
 use super::along::{Extent, Hull, Piece, extent, pieces};
 use super::curves::{local, samples};
+use super::turned::perpendicular;
 use super::{axis, proof};
 use crate::classification::Kind;
 
@@ -26,9 +27,8 @@ pub(super) fn circle(curve: &NurbsCurve) -> Option<Kind> {
     let fitted = axis::fit(std::slice::from_ref(&row))?;
     let (height, radius) = fitted.mean(&row);
     let centre = fitted.centre + height * fitted.axis;
-    let start = row[0] - centre;
     let mut axis = fitted.axis;
-    let xdir = (start - start.dot(axis) * axis).try_normalize()?;
+    let xdir = perpendicular(row[0] - centre, axis)?;
     let turned = |axis| {
         let conic = Conic { centre, normal: axis, xdir, radii: (radius, radius) };
         Some(conic.angles(&curve_at)?.range())

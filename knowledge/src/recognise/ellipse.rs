@@ -7,6 +7,7 @@ use super::axis::through;
 use super::conic::{Conic, full_if_closed};
 use super::curves::{local, samples};
 use super::least_squares::least_squares;
+use super::turned::perpendicular;
 use crate::classification::Kind;
 
 /// The ellipse whose equation fits samples best, in the direction in which the curve runs; `xdir` is its long half-axis.
@@ -20,7 +21,7 @@ pub(super) fn candidate(curve: &NurbsCurve) -> Option<Kind> {
     let flat: Vec<DVec2> = row.iter().map(|p| DVec2::new((*p - middle).dot(x), (*p - middle).dot(y)) / size).collect();
     let (centre, long, radii) = fit(&flat)?;
     let centre = middle + size * (centre.x * x + centre.y * y);
-    let xdir = long.x * x + long.y * y;
+    let xdir = perpendicular(long.x * x + long.y * y, plane.axis)?;
     let radii = (size * radii.0, size * radii.1);
     let turned = |normal| {
         let conic = Conic { centre, normal, xdir, radii };

@@ -49,6 +49,13 @@ impl Net<'_> {
     }
 }
 
+/// The unit vector across an axis towards `arm`; none along the axis.
+pub(super) fn perpendicular(arm: DVec3, axis: DVec3) -> Option<DVec3> {
+    let across = (arm - arm.dot(axis) * axis).try_normalize()?;
+    // twice is enough: what is left along the axis is rounding of the first time
+    (across - across.dot(axis) * axis).try_normalize()
+}
+
 /// The other direction.
 pub(super) fn other(direction: Direction) -> Direction {
     if direction == Direction::U { Direction::V } else { Direction::U }
@@ -73,7 +80,7 @@ impl Turned {
         let start = |j: &usize| across(net.point(0, *j));
         let widest = (0..m).max_by(|a, b| start(a).length().total_cmp(&start(b).length()))?;
         let radius = start(&widest).length();
-        let xdir = xdir.or_else(|| start(&widest).try_normalize())?;
+        let xdir = xdir.or_else(|| perpendicular(net.point(0, widest) - centre, axis))?;
         let ydir = axis.cross(xdir);
         let flat = |i, j| {
             let arm = net.point(i, j) - centre;

@@ -1,0 +1,362 @@
+//! What shapes are is recognised from their control points alone, with the parameters that they were made of, however they are
+//! placed, cut and parametrised; what is only near to a shape is accepted with an honest gap, or not at all.
+
+mod common;
+
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+use common::corpus;
+use common::kinds::{at, distance, gap, name, turn};
+use common::random::Random;
+use glam::DVec3;
+use perpend::knowledge::{default_tolerance, prove, recognise};
+use perpend::{
+    Circle, Cone, Cylinder, Definition, Direction, Ellipse, Frame, IntoDefinition, Item, Kind, Line, Model, NurbsCurve,
+    NurbsSurface, Plane, Sphere, Torus,
+};
+use serde_json::Value;
+
+const EPSILON: f64 = f64::EPSILON;
+
+fn recognised(definition: &Definition) -> Item<Kind> {
+    recognise(definition, default_tolerance(definition))
+}
+
+fn vector(json: &Value) -> DVec3 {
+    let at = |k: usize| json[k].as_f64().expect("a number");
+    DVec3::new(at(0), at(1), at(2))
+}
+
+fn truths(file: &str) -> Value {
+    let path = corpus::data().join(file);
+    let text = std::fs::read_to_string(&path).unwrap_or_else(|e| panic!("{}: {e}", path.display()));
+    serde_json::from_str(&text).expect("JSON")
+}
+
+#[test]
+fn the_arcs_of_the_papers_table_are_recognised_to_the_last_digits() {
+    let truths = truths("circles-table1.analytic.json");
+    for entry in corpus::entities(&corpus::data().join("circles-table1.json")) {
+        let (definition, truth) = (entry.shape.definition(), &truths[entry.id.to_string()]);
+        let item = recognised(&definition);
+        let Kind::Circle { centre, axis, xdir, radius, sweep } = item.value else {
+            panic!("{}: {:?}", entry.name, item.value);
+        };
+        let allowed = 1e-12 * definition.size();
+        let number = |key: &str| truth[key].as_f64().expect("a number");
+        let off = [
+            centre.distance(vector(&truth["centre"])),
+            axis.distance(vector(&truth["axis"])),
+            xdir.distance(vector(&truth["xdir"])),
+            (radius - number("radius")).abs(),
+            (turn(sweep) - number("sweep")).abs(),
+        ];
+        assert!(off.iter().all(|off| *off <= allowed), "{}: {off:?} of {allowed:e}", entry.name);
+        assert!(gap(&item) < 1e-12, "{}: gap {:e}", entry.name, gap(&item));
+    }
+}
+
+#[test]
+fn the_quadrics_are_recognised_to_the_last_digits() {
+    let truths = truths("quadrics.analytic.json");
+    for entry in corpus::entities(&corpus::data().join("quadrics.json")) {
+        let (definition, truth) = (entry.shape.definition(), &truths[entry.id.to_string()]);
+        let item = recognised(&definition);
+        let allowed = 1e-12 * definition.size();
+        let number = |json: &Value, key: &str| json[key].as_f64().unwrap_or_else(|| panic!("{key} in {json}"));
+        let (origin, axis, profile) = (vector(&truth["origin"]), vector(&truth["axis"]), &truth["profile"]);
+        let beside = |p: DVec3| (p - origin).cross(axis).length();
+        let along = |p: DVec3| (p - origin).dot(axis);
+        let rise = |key: &str| profile[key][1].as_f64().expect("a number");
+        let sweep_off = |sweep: (f64, f64)| (turn(sweep) - number(truth, "sweep")).abs();
+        assert_eq!(name(&item.value).to_lowercase(), truth["type"].as_str().expect("a type"), "{}", entry.name);
+        let off = match item.value {
+            Kind::Plane { origin: corner, normal, sides } => {
+                let (a, b) = sides.expect("a rectangle");
+                let (width, height) = (number(truth, "width"), number(truth, "height"));
+                let sides = (a.length() - width).abs().max((b.length() - height).abs());
+                vec![along(corner).abs(), normal.cross(axis).length(), sides]
+            }
+            Kind::Cylinder { centre, axis: n, radius, height, sweep, .. } => {
+                let heights = [along(centre + height.0 * n) - rise("from"), along(centre + height.1 * n) - rise("to")];
+                let heights = heights[0].abs().max(heights[1].abs());
+                let radius = (radius - number(truth, "radius")).abs();
+                vec![beside(centre), n.cross(axis).length(), radius, sweep_off(sweep), heights]
+            }
+            Kind::Cone { apex, axis: n, half_angle, height, sweep, .. } => {
+                let heights = [along(apex + height.0 * n) - rise("from"), along(apex + height.1 * n) - rise("to")];
+                let heights = heights[0].abs().max(heights[1].abs());
+                let apex_off = (along(apex) - number(truth, "apex_z")).abs();
+                let angle = (half_angle - number(truth, "half_angle")).abs();
+                vec![beside(apex), apex_off, n.cross(axis).length(), angle, sweep_off(sweep), heights]
+            }
+            Kind::Sphere { centre, axis: n, radius, sweep, latitude, .. } => {
+                let radius = (radius - number(truth, "radius")).abs();
+                let up = n.dot(axis).signum();
+                let start = (up * latitude.0 - number(profile, "start")).abs();
+                let turned = (turn(latitude) - number(profile, "sweep")).abs();
+                vec![centre.distance(origin), n.cross(axis).length(), radius, sweep_off(sweep), start, turned]
+            }
+            Kind::Torus { centre, axis: n, major_radius, minor_radius, sweep, section, .. } => {
+                let radii = [major_radius - number(truth, "major"), minor_radius - number(truth, "minor")];
+                let radii = radii[0].abs().max(radii[1].abs());
+                let up = n.dot(axis).signum();
+                let start = (up * section.0 - number(profile, "start")).abs();
+                let turned = (turn(section) - number(profile, "sweep")).abs();
+                vec![centre.distance(origin), n.cross(axis).length(), radii, sweep_off(sweep), start, turned]
+            }
+            kind => panic!("{}: {kind:?}", entry.name),
+        };
+        assert!(off.iter().all(|off| *off <= allowed), "{}: {off:?} of {allowed:e}", entry.name);
+        assert!(gap(&item) < 1e-11, "{}: gap {:e}", entry.name, gap(&item));
+    }
+}
+
+/// A random frame, `offset` from the origin.
+fn frame(random: &mut Random, offset: f64) -> Frame {
+    let [x, _, z] = random.frame();
+    Frame::new(offset * random.direction(), z, x).expect("a frame")
+}
+
+/// A range of angles of 0.5 to 360 degrees.
+fn sweep(random: &mut Random) -> (f64, f64) {
+    let start = random.between(-PI, PI);
+    let turn = if random.chance(0.2) { TAU } else { random.power(0.5_f64.log10(), 360.0_f64.log10()).to_radians() };
+    (start, start + turn)
+}
+
+/// A shape of a class with its definition; `scale` is about its size but for short arcs.
+fn shape(random: &mut Random, class: &str, scale: f64, offset: f64) -> (Definition, Kind) {
+    let frame = frame(random, offset);
+    let radius = scale * random.between(0.3, 2.0);
+    let sweep = sweep(random);
+    let height = (scale * random.between(-1.0, 0.0), scale * random.between(0.1, 2.0));
+    let entered = match class {
+        "Line" => Line::new(frame.centre, frame.centre + radius * random.direction()).expect("valid").enter(),
+        "Circle" => Circle::new(frame, radius, sweep).expect("valid").enter(),
+        "Ellipse" => {
+            let start = sweep.0;
+            let turn = turn(sweep).max(10.0_f64.to_radians());
+            let second = radius * random.between(0.3, 0.9);
+            Ellipse::new(frame, (radius, second), (start, start + turn)).expect("valid").enter()
+        }
+        "Plane" => Plane::new(frame, height, (0.0, radius)).expect("valid").enter(),
+        "Cylinder" => Cylinder::new(frame, radius, height, sweep).expect("valid").enter(),
+        "Cone" => {
+            let other = if random.chance(0.3) { 0.0 } else { radius * random.between(0.1, 0.8) };
+            let radii = if random.chance(0.5) { (radius, other) } else { (other, radius) };
+            Cone::new(frame, radii, height, sweep).expect("valid").enter()
+        }
+        "Sphere" => {
+            let low = random.pick(&[-FRAC_PI_2, -1.2, -0.3, 0.1]);
+            let high = random.pick(&[FRAC_PI_2, 1.3, 0.4]);
+            Sphere::new(frame, radius, (low, high), sweep).expect("valid").enter()
+        }
+        _ => {
+            let tube = if random.chance(0.4) { (0.0, TAU) } else { (random.between(-3.0, 1.0), 2.0) };
+            Torus::new(frame, 2.0 * radius, radius * random.between(0.2, 1.0), tube, sweep).expect("valid").enter()
+        }
+    };
+    let entered = entered.expect("valid");
+    (entered.definition, entered.kind.expect("a shape has a class"))
+}
+
+const CLASSES: [&str; 8] = ["Line", "Circle", "Ellipse", "Plane", "Cylinder", "Cone", "Sphere", "Torus"];
+
+/// The control values of a curve over new knots, where the parameter `u` is `k t / (1 + (k - 1) t)` of the new `t` in `[0, 1]`:
+/// homogeneous points are multiplied by the factor's values at their knots.
+fn projective(degree: usize, knots: &[f64], k: f64) -> (Vec<f64>, Vec<f64>) {
+    let (a, b) = (knots[0], knots[knots.len() - 1]);
+    let new: Vec<f64> = knots
+        .iter()
+        .map(|t| {
+            let u = (t - a) / (b - a);
+            u / (u + k * (1.0 - u))
+        })
+        .collect();
+    let count = knots.len() - degree - 1;
+    let factor = |i: usize| (1..=degree).map(|j| 1.0 + (k - 1.0) * new[i + j]).product::<f64>();
+    let factors = (0..count).map(factor).collect();
+    (new, factors)
+}
+
+fn reparametrised_curve(curve: &NurbsCurve, k: f64) -> NurbsCurve {
+    let (knots, factors) = projective(curve.degree(), curve.knots().as_slice(), k);
+    let weight = |i: usize| curve.weights().map_or(1.0, |w| w[i]);
+    let weights = factors.iter().enumerate().map(|(i, f)| f * weight(i)).collect();
+    NurbsCurve::new(curve.degree(), knots, curve.control_points().to_vec(), Some(weights)).expect("valid")
+}
+
+fn reparametrised_surface(surface: &NurbsSurface, k: (f64, f64)) -> NurbsSurface {
+    let (p, q) = surface.degree();
+    let (u, along) = projective(p, surface.knots(Direction::U).as_slice(), k.0);
+    let (v, across) = projective(q, surface.knots(Direction::V).as_slice(), k.1);
+    let columns = surface.columns();
+    let weight = |i: usize, j: usize| surface.weights().map_or(1.0, |w| w[i * columns + j]) * along[i] * across[j];
+    let weights = (0..surface.rows()).map(|i| (0..columns).map(|j| weight(i, j)).collect()).collect();
+    let points = surface.control_points().chunks(columns).map(<[DVec3]>::to_vec).collect();
+    NurbsSurface::new((p, q), (u, v), points, Some(weights)).expect("valid")
+}
+
+/// The same set of points in another form.
+fn disguised(random: &mut Random, definition: &Definition) -> Definition {
+    let inside = |random: &mut Random, (a, b): (f64, f64)| a + (b - a) * random.between(0.1, 0.9);
+    match definition {
+        Definition::NurbsCurve(curve) => {
+            let mut curve = reparametrised_curve(curve, random.power(-0.5, 0.5));
+            let by = random.count(0, 5);
+            if by > 0 {
+                curve = curve.elevate_degree(by).expect("a degree within the limit");
+            }
+            for _ in 0..random.count(0, 3) {
+                curve = curve.insert_knot(inside(random, curve.domain()), 1).expect("inside");
+            }
+            if random.chance(0.5) { curve.reversed().into() } else { curve.into() }
+        }
+        Definition::NurbsSurface(surface) => {
+            let mut surface = reparametrised_surface(surface, (random.power(-0.5, 0.5), random.power(-0.5, 0.5)));
+            for direction in [Direction::U, Direction::V] {
+                let by = random.count(0, 5);
+                if by > 0 {
+                    surface = surface.elevate_degree(direction, by).expect("a degree within the limit");
+                }
+                for _ in 0..random.count(0, 2) {
+                    let at = inside(random, surface.domain(direction));
+                    surface = surface.insert_knot(direction, at, 1).expect("inside");
+                }
+                if random.chance(0.5) {
+                    surface = surface.reversed(direction);
+                }
+            }
+            if random.chance(0.5) { surface.swapped().into() } else { surface.into() }
+        }
+    }
+}
+
+/// Points of a definition, `n + 1` along each direction.
+fn points(definition: &Definition, n: usize) -> Vec<(f64, f64, DVec3)> {
+    let share = |k: usize, n: usize, (a, b): (f64, f64)| {
+        let t = k as f64 / n as f64;
+        (1.0 - t) * a + t * b
+    };
+    match definition {
+        Definition::NurbsCurve(curve) => (0..=n * n)
+            .map(|k| {
+                let u = share(k, n * n, curve.domain());
+                (u, 0.0, curve.point(u))
+            })
+            .collect(),
+        Definition::NurbsSurface(surface) => (0..=n)
+            .flat_map(|i| (0..=n).map(move |j| (i, j)))
+            .map(|(i, j)| {
+                let (u, v) = (share(i, n, surface.domain(Direction::U)), share(j, n, surface.domain(Direction::V)));
+                (u, v, surface.point(u, v))
+            })
+            .collect(),
+    }
+}
+
+/// Panics where points show that the definition and its class are farther apart than the gap, one way or the other.
+fn honest(definition: &Definition, item: &Item<Kind>, what: &str) {
+    let rounding = 64.0 * EPSILON * (definition.reach() + definition.size());
+    let allowed = gap(item) + rounding;
+    for (u, v, p) in points(definition, 12) {
+        if let Some(off) = distance(&item.value, p).filter(|off| *off > allowed) {
+            panic!("{what}: at ({u}, {v}) {off:e} from {:?}, gap {:e}", item.value, gap(item));
+        }
+    }
+    let mut model = Model::new();
+    let id = model.insert("", definition.clone()).expect("valid");
+    for i in 0..=4 {
+        for j in 0..=4 {
+            let Some(p) = at(&item.value, f64::from(i) / 4.0, f64::from(j) / 4.0) else { return };
+            let foot = model.project(id, p).expect("finite");
+            assert!(foot.lower_bound <= allowed, "{what}: {p} is {foot:?} away, gap {:e}, {:?}", gap(item), item.value);
+        }
+    }
+}
+
+#[test]
+fn shapes_are_recognised_in_every_place_size_and_form() {
+    let mut random = Random::new(20_061);
+    for round in 0..120 {
+        for class in CLASSES {
+            let scale = random.power(-3.0, 6.0);
+            let offset = if random.chance(0.5) { 0.0 } else { random.power(-1.0, 7.0) };
+            let (plain, _) = shape(&mut random, class, scale, offset);
+            for definition in [plain.clone(), disguised(&mut random, &plain)] {
+                let item = recognised(&definition);
+                let what = format!("round {round}, {class} of size {:e} at {offset:e}", definition.size());
+                assert_eq!(name(&item.value), class, "{what}: {definition:?}");
+                if round % 4 == 0 {
+                    honest(&definition, &item, &what);
+                }
+            }
+        }
+    }
+}
+
+#[test]
+fn analytic_shapes_prove_the_class_with_which_they_enter() {
+    let mut random = Random::new(20_062);
+    for _ in 0..100 {
+        for class in CLASSES {
+            let (scale, offset) = (random.power(-3.0, 6.0), random.power(-2.0, 3.0));
+            let (definition, kind) = shape(&mut random, class, scale, offset);
+            let proven = prove(&kind, &definition, default_tolerance(&definition));
+            assert!(proven.is_ok(), "{proven:?}: {kind:?} over {definition:?}");
+        }
+    }
+}
+
+#[test]
+fn almost_shapes_are_never_accepted_beyond_what_they_are_off() {
+    let mut random = Random::new(20_063);
+    let mut refused = 0;
+    for round in 0..60 {
+        for class in CLASSES {
+            let (scale, offset) = (random.power(-2.0, 3.0), random.power(-2.0, 1.0));
+            let (plain, kind) = shape(&mut random, class, scale, offset);
+            let plain = disguised(&mut random, &plain);
+            let off = plain.size() * random.power(-10.0, -3.0);
+            let moved = moved(&mut random, &plain, off);
+            for tolerance in [default_tolerance(&moved), 1e-5 * moved.size()] {
+                let item = recognise(&moved, tolerance);
+                assert!(gap(&item) <= tolerance, "{:?}", item.basis);
+                honest(&moved, &item, &format!("round {round}, {class} off by {off:e}"));
+                refused += usize::from(name(&item.value) != class);
+            }
+            // what it was made from is refused where points show that it lies
+            let seen = points(&moved, 12).into_iter().filter_map(|(_, _, p)| distance(&kind, p)).fold(0.0, f64::max);
+            if let Ok(gap) = prove(&kind, &moved, default_tolerance(&moved)) {
+                assert!(seen <= gap + 64.0 * EPSILON * (moved.reach() + moved.size()), "{seen:e} seen, {gap:e} proven");
+            }
+        }
+    }
+    assert!(refused > 300, "{refused} of 960: a moved control point makes most of them something else");
+}
+
+/// The definition with one control point moved by `off`.
+fn moved(random: &mut Random, definition: &Definition, off: f64) -> Definition {
+    let step = off * random.direction();
+    match definition {
+        Definition::NurbsCurve(curve) => {
+            let mut points = curve.control_points().to_vec();
+            let k = random.count(0, points.len() - 1);
+            points[k] += step;
+            let knots = curve.knots().as_slice().to_vec();
+            NurbsCurve::new(curve.degree(), knots, points, curve.weights().map(<[f64]>::to_vec)).expect("valid").into()
+        }
+        Definition::NurbsSurface(surface) => {
+            let mut points = surface.control_points().to_vec();
+            let k = random.count(0, points.len() - 1);
+            points[k] += step;
+            let columns = surface.columns();
+            let knots = [Direction::U, Direction::V].map(|d| surface.knots(d).as_slice().to_vec());
+            let [u, v] = knots;
+            let rows = points.chunks(columns).map(<[DVec3]>::to_vec).collect();
+            let weights = surface.weights().map(|w| w.chunks(columns).map(<[f64]>::to_vec).collect());
+            NurbsSurface::new(surface.degree(), (u, v), rows, weights).expect("valid").into()
+        }
+    }
+}
