@@ -282,7 +282,8 @@ fn shapes_are_recognised_in_every_place_size_and_form() {
     for round in 0..120 {
         for class in CLASSES {
             let scale = random.power(-3.0, 6.0);
-            let offset = if random.chance(0.5) { 0.0 } else { random.power(-1.0, 7.0) };
+            // farther away than this the coordinates hold too few digits of a short arc
+            let offset = if random.chance(0.3) { 0.0 } else { random.power(-1.0, 7.0).min(1e5 * scale) };
             let (plain, _) = shape(&mut random, class, scale, offset);
             for definition in [plain.clone(), disguised(&mut random, &plain)] {
                 let item = recognised(&definition);

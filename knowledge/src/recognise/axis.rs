@@ -21,26 +21,25 @@ type Equation = [f64; 5];
 /// are the same in all rows. None where no row is bent.
 pub(super) fn fit(rows: &[Vec<DVec3>]) -> Option<Axis> {
     let mut axis = rows.iter().filter_map(|row| through(row)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
-    let mut meridians = false;
-    for round in 0..16 {
-        let equations = axis.equations(rows, meridians);
+    let (mut meridians, mut before) = (false, f64::INFINITY);
+    for _ in 0..32 {
+        let Some(x) = step(&axis.equations(rows, meridians)) else { break };
         let (u, v) = axis.axis.any_orthonormal_pair();
-        let Some(x) = step(&equations) else { break };
         let turned = axis.axis + x[0] * u + x[1] * v;
         let moved = Axis { centre: axis.centre + x[2] * u + x[3] * v, axis: turned.normalize() };
         if !(moved.centre.is_finite() && moved.axis.is_finite()) {
             break;
         }
-        let radius = axis.largest_radius(rows);
-        let small = x[0].hypot(x[1]) < 1e-9 && x[2].hypot(x[3]) < 1e-9 * radius;
+        let length = x[0].hypot(x[1]).max(x[2].hypot(x[3]) / axis.largest_radius(rows));
         axis = moved;
-        if small && !meridians && rows.len() > 1 {
-            meridians = axis.has_meridians(rows);
-            if !meridians {
+        // steps that shrink no more are rounding
+        if length < 1e-6 && length >= 0.25 * before || length < f64::EPSILON {
+            if meridians || rows.len() == 1 || !axis.has_meridians(rows) {
                 break;
             }
-        } else if small && round > 3 {
-            break;
+            (meridians, before) = (true, f64::INFINITY);
+        } else {
+            before = length;
         }
     }
     Some(axis)

@@ -69,8 +69,12 @@ fn of_surface(surface: &NurbsSurface, definition: &Definition, tolerance: f64) -
     }
     let turned = directions.map(|angular| revolution::pose(surface, angular, tolerance));
     for pose in turned.iter().flatten() {
-        let candidates = [cylinder::candidate, cone::candidate, sphere::candidate, torus::candidate];
+        let candidates = [cylinder::candidate, cone::candidate, sphere::candidate];
         if let Some(found) = candidates.iter().find_map(|candidate| accept(candidate(pose))) {
+            return Some(found);
+        }
+        let slice = accept(sphere::about_meridian(pose, surface, tolerance));
+        if let Some(found) = slice.or_else(|| accept(torus::candidate(pose))) {
             return Some(found);
         }
     }

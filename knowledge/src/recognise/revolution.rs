@@ -34,18 +34,26 @@ pub(super) fn pose(surface: &NurbsSurface, angular: Direction, tolerance: f64) -
     let fitted = axis::fit(&rows)?;
     // the point of the axis that is nearest to the surface's middle
     let centre = origin + (fitted.centre - fitted.centre.dot(fitted.axis) * fitted.axis);
+    let pose = about(surface, angular, centre, fitted.axis, tolerance)?;
+    if pose.sweep.1 < pose.sweep.0 { about(surface, angular, centre, -fitted.axis, tolerance) } else { Some(pose) }
+}
+
+/// The surface as it turns about an axis; none where it does not within `tolerance`.
+pub(super) fn about(
+    surface: &NurbsSurface,
+    angular: Direction,
+    centre: DVec3,
+    axis: DVec3,
+    tolerance: f64,
+) -> Option<Pose> {
+    let (turned, xdir) = Turned::about(surface, angular, centre, axis, None)?;
+    if turned.deviation > tolerance {
+        return None;
+    }
+    let bounds = surface.control_box();
     let slack = 1e-2 * tolerance.min(1e-9 * bounds.diagonal() + 16.0 * f64::EPSILON * bounds.reach());
-    let about = |axis| {
-        let (turned, xdir) = Turned::about(surface, angular, centre, axis, None)?;
-        if turned.deviation > tolerance {
-            return None;
-        }
-        let sweep = UNIT.angles(&turned.arc)?.range();
-        let sweep = full_if_closed(sweep, slack / turned.radius);
-        Some(Pose { centre, axis, xdir, sweep, angular, turned, slack })
-    };
-    let pose = about(fitted.axis)?;
-    if pose.sweep.1 < pose.sweep.0 { about(-fitted.axis) } else { Some(pose) }
+    let sweep = full_if_closed(UNIT.angles(&turned.arc)?.range(), slack / turned.radius);
+    Some(Pose { centre, axis, xdir, sweep, angular, turned, slack })
 }
 
 /// The surface of revolution.

@@ -3,10 +3,12 @@
 use std::f64::consts::FRAC_PI_2;
 
 use glam::DVec3;
+use perpend_kernel::NurbsSurface;
 
 use super::conic::Conic;
 use super::curves::samples;
-use super::revolution::Pose;
+use super::revolution::{Pose, about};
+use super::torus;
 use super::turned::Turned;
 use crate::classification::Kind;
 
@@ -53,6 +55,20 @@ pub(super) fn candidate(pose: &Pose) -> Option<Kind> {
         latitude: (inside(first), inside(last)),
         angular: pose.angular,
     })
+}
+
+/// The sphere about the centre of the profile's circle.
+///
+/// Of a narrow slice the axis is badly known across the slice, and the meridian tells the centre far better: the axis is moved
+/// to it.
+pub(super) fn about_meridian(pose: &Pose, surface: &NurbsSurface, tolerance: f64) -> Option<Kind> {
+    let (beside, _, radius) = torus::circle(&pose.turned.profile)?;
+    if beside.abs() > 1e-3 * radius {
+        return None;
+    }
+    let (sin, cos) = (0.5 * (pose.sweep.0 + pose.sweep.1)).sin_cos();
+    let middle = cos * pose.xdir + sin * pose.axis.cross(pose.xdir);
+    candidate(&about(surface, pose.angular, pose.centre + beside * middle, pose.axis, tolerance)?)
 }
 
 /// Bound of the distance from a sphere: the profile is a part of a meridian.

@@ -1,6 +1,7 @@
 //! Tori.
 
 use glam::DVec3;
+use perpend_kernel::NurbsCurve;
 
 use super::axis;
 use super::conic::{Conic, full_if_closed};
@@ -12,12 +13,8 @@ use crate::classification::Kind;
 /// The torus whose tube is the circle through the profile.
 pub(super) fn candidate(pose: &Pose) -> Option<Kind> {
     let profile = &pose.turned.profile;
-    // in the half plane of the axis, whatever rounding has left beside it
-    let row: Vec<DVec3> = samples(profile).into_iter().map(|p| DVec3::new(p.x, 0.0, p.z)).collect();
-    let fitted = axis::fit(std::slice::from_ref(&row))?;
-    let (_, minor_radius) = fitted.mean(&row);
-    let (major_radius, at) = (fitted.centre.x, fitted.centre.z);
-    if !(major_radius > 0.0 && minor_radius > 0.0) {
+    let (major_radius, at, minor_radius) = circle(profile)?;
+    if major_radius <= 0.0 {
         return None;
     }
     let section = tube(major_radius, minor_radius, at).angles(profile)?.range();
@@ -32,6 +29,14 @@ pub(super) fn candidate(pose: &Pose) -> Option<Kind> {
         section,
         angular: pose.angular,
     })
+}
+
+/// The circle through a profile: its centre's distance from the axis and height, and its radius.
+pub(super) fn circle(profile: &NurbsCurve) -> Option<(f64, f64, f64)> {
+    // in the half plane of the axis, whatever rounding has left beside it
+    let row: Vec<DVec3> = samples(profile).into_iter().map(|p| DVec3::new(p.x, 0.0, p.z)).collect();
+    let fitted = axis::fit(std::slice::from_ref(&row))?;
+    Some((fitted.centre.x, fitted.centre.z, fitted.mean(&row).1))
 }
 
 /// Bound of the distance from a torus: the profile is a part of the tube's circle.
