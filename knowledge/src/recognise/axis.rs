@@ -16,14 +16,14 @@ type Equation = [f64; 5];
 
 /// The axis of rows of points: `rows[b][a]` lies on circle `b` at angle `a`.
 ///
-/// It starts at the circle through the three points of a row that are farthest from one line. Gauss–Newton steps then fit direction and
-/// place: radius and height are the same along a row, and, where the start shows meridians in planes with the axis, angles
-/// are the same in all rows. None where no row is bent.
-pub(super) fn fit(rows: &[Vec<DVec3>]) -> Option<Axis> {
+/// It starts at the circle through the three points of a row that are farthest from one line. Gauss–Newton steps then fit
+/// direction and place: radius and height are the same along a row and, with `meridians`, points of one angle lie in a plane
+/// with the axis, which tells far more of the axis where arcs are short. None where no row is bent.
+pub(super) fn fit(rows: &[Vec<DVec3>], meridians: bool) -> Option<Axis> {
     let mut axis = rows.iter().filter_map(|row| through(row)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
-    let (mut meridians, mut before) = (false, f64::INFINITY);
+    let (mut with_meridians, mut before) = (false, f64::INFINITY);
     for _ in 0..32 {
-        let Some(x) = step(&axis.equations(rows, meridians)) else { break };
+        let Some(x) = step(&axis.equations(rows, with_meridians)) else { break };
         let (u, v) = axis.axis.any_orthonormal_pair();
         let turned = axis.axis + x[0] * u + x[1] * v;
         let moved = Axis { centre: axis.centre + x[2] * u + x[3] * v, axis: turned.normalize() };
@@ -34,10 +34,10 @@ pub(super) fn fit(rows: &[Vec<DVec3>]) -> Option<Axis> {
         axis = moved;
         // steps that shrink no more are rounding
         if length < 1e-6 && length >= 0.25 * before || length < f64::EPSILON {
-            if meridians || rows.len() == 1 || !axis.has_meridians(rows) {
+            if with_meridians == meridians {
                 break;
             }
-            (meridians, before) = (true, f64::INFINITY);
+            (with_meridians, before) = (true, f64::INFINITY);
         } else {
             before = length;
         }
@@ -62,17 +62,9 @@ impl Axis {
         rows.iter().flatten().map(|p| self.across(*p).length()).fold(0.0, f64::max)
     }
 
-    /// The direction across the axis in which the points of angle `a` lie, and how far any of them is beside it.
-    fn meridian(&self, rows: &[Vec<DVec3>], a: usize) -> (DVec3, f64) {
-        let sum: DVec3 = rows.iter().map(|row| self.across(row[a])).sum();
-        let towards = sum.normalize_or_zero();
-        let beside = rows.iter().map(|row| self.axis.cross(towards).dot(self.across(row[a])).abs());
-        (towards, beside.fold(0.0, f64::max))
-    }
-
-    fn has_meridians(&self, rows: &[Vec<DVec3>]) -> bool {
-        let size = rows.iter().flatten().map(|p| p.distance(rows[0][0])).fold(0.0, f64::max);
-        (0..rows[0].len()).all(|a| self.meridian(rows, a).1 <= 1e-6 * size)
+    /// The direction across the axis in which the points of angle `a` lie.
+    fn meridian(&self, rows: &[Vec<DVec3>], a: usize) -> DVec3 {
+        rows.iter().map(|row| self.across(row[a])).sum::<DVec3>().normalize_or_zero()
     }
 
     fn equations(&self, rows: &[Vec<DVec3>], meridians: bool) -> Vec<Equation> {
@@ -100,7 +92,7 @@ impl Axis {
         }
         if meridians {
             for a in 0..rows[0].len() {
-                let side = self.axis.cross(self.meridian(rows, a).0);
+                let side = self.axis.cross(self.meridian(rows, a));
                 let (x, y) = (side.dot(u), side.dot(v));
                 let (mut group, mut radii) = (Vec::new(), Vec::new());
                 for row in rows {

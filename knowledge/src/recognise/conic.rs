@@ -24,7 +24,7 @@ pub(super) struct Conic {
 pub(super) fn circle(curve: &NurbsCurve) -> Option<Kind> {
     let (curve_at, origin) = local(curve)?;
     let row = samples(&curve_at);
-    let fitted = axis::fit(std::slice::from_ref(&row))?;
+    let fitted = axis::fit(std::slice::from_ref(&row), false)?;
     let (height, radius) = fitted.mean(&row);
     let centre = fitted.centre + height * fitted.axis;
     let mut axis = fitted.axis;

@@ -34,11 +34,11 @@ pub use refuted::Refuted;
 use crate::classification::Kind;
 use crate::item::{Basis, Item};
 
-/// The deviation at which a class is accepted unless the caller says otherwise: 1e-10 of the size, and 16 ulps of the largest
-/// coordinate, below which the definition's own numbers cannot tell one shape from another.
+/// The deviation at which a class is accepted unless the caller says otherwise: 1e-10 of the size, and 64 ulps of the largest
+/// coordinate, which the refinements of a definition far from the origin (degrees, knots, parametrisation) add up to.
 #[must_use]
 pub fn default_tolerance(definition: &Definition) -> f64 {
-    1e-10 * definition.size() + 16.0 * f64::EPSILON * definition.reach()
+    1e-10 * definition.size() + 64.0 * f64::EPSILON * definition.reach()
 }
 
 /// The class of a definition: the most special one that it is proved to be within `tolerance`, else [`Kind::FreeForm`].

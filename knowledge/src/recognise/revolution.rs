@@ -31,11 +31,19 @@ pub(super) fn pose(surface: &NurbsSurface, angular: Direction, tolerance: f64) -
             parameters(surface.domain(angular), 16).map(|s| at(s) - origin).collect()
         })
         .collect();
-    let fitted = axis::fit(&rows)?;
-    // the point of the axis that is nearest to the surface's middle
-    let centre = origin + (fitted.centre - fitted.centre.dot(fitted.axis) * fitted.axis);
-    let pose = about(surface, angular, centre, fitted.axis, tolerance)?;
-    if pose.sweep.1 < pose.sweep.0 { about(surface, angular, centre, -fitted.axis, tolerance) } else { Some(pose) }
+    let turned = |meridians| {
+        let fitted = axis::fit(&rows, meridians)?;
+        // the point of the axis that is nearest to the surface's middle
+        let centre = origin + (fitted.centre - fitted.centre.dot(fitted.axis) * fitted.axis);
+        about(surface, angular, centre, fitted.axis, tolerance)
+    };
+    // profiles need not lie in planes with the axis: the better fit counts
+    let poses = [true, false].into_iter().filter_map(turned);
+    let pose = poses.min_by(|a, b| a.turned.deviation.total_cmp(&b.turned.deviation))?;
+    if pose.sweep.1 >= pose.sweep.0 {
+        return Some(pose);
+    }
+    about(surface, angular, pose.centre, -pose.axis, tolerance)
 }
 
 /// The surface as it turns about an axis; none where it does not within `tolerance`.
@@ -51,8 +59,8 @@ pub(super) fn about(
         return None;
     }
     let bounds = surface.control_box();
-    let slack = 1e-2 * tolerance.min(1e-9 * bounds.diagonal() + 16.0 * f64::EPSILON * bounds.reach());
-    let sweep = full_if_closed(UNIT.angles(&turned.arc)?.range(), slack / turned.radius);
+    let slack = tolerance.min(1e-9 * bounds.diagonal() + 64.0 * f64::EPSILON * bounds.reach());
+    let sweep = full_if_closed(UNIT.angles(&turned.arc)?.range(), 1e-2 * slack / turned.radius);
     Some(Pose { centre, axis, xdir, sweep, angular, turned, slack })
 }
 

@@ -18,7 +18,7 @@ pub(super) fn candidate(pose: &Pose) -> Option<Kind> {
         return None;
     }
     let section = tube(major_radius, minor_radius, at).angles(profile)?.range();
-    let section = full_if_closed(section, pose.slack / minor_radius);
+    let section = full_if_closed(section, 1e-2 * pose.slack / minor_radius);
     Some(Kind::Torus {
         centre: pose.centre + at * pose.axis,
         axis: pose.axis,
@@ -35,7 +35,7 @@ pub(super) fn candidate(pose: &Pose) -> Option<Kind> {
 pub(super) fn circle(profile: &NurbsCurve) -> Option<(f64, f64, f64)> {
     // in the half plane of the axis, whatever rounding has left beside it
     let row: Vec<DVec3> = samples(profile).into_iter().map(|p| DVec3::new(p.x, 0.0, p.z)).collect();
-    let fitted = axis::fit(std::slice::from_ref(&row))?;
+    let fitted = axis::fit(std::slice::from_ref(&row), false)?;
     Some((fitted.centre.x, fitted.centre.z, fitted.mean(&row).1))
 }
 
