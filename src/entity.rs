@@ -3,11 +3,12 @@
 use std::sync::{Arc, OnceLock};
 
 use perpend_kernel::{Definition, DefinitionData, EntityId, InvalidDefinition};
-use perpend_knowledge::{NonFinite, Record};
+use perpend_knowledge::{NonFinite, Record, Refuted};
 use perpend_projection::Prepared;
 use serde::{Deserialize, Serialize};
 
 use crate::enter::IntoDefinition;
+use crate::trust::{FIELD, Trust};
 use crate::written::{Writing, Written};
 
 /// An entity: its identity, its definition, what is known of it, and what queries need of it.
@@ -46,6 +47,9 @@ pub enum EntityError {
     /// A number of its record is not finite.
     #[error("knowledge: {0}")]
     Knowledge(#[from] NonFinite),
+    /// Its record states a class that it is proved not to have.
+    #[error("knowledge: {FIELD}: {0}")]
+    FalseClass(#[from] Refuted),
 }
 
 impl Entity {
@@ -109,11 +113,19 @@ impl TryFrom<EntityData> for Entity {
     type Error = EntityError;
 
     fn try_from(data: EntityData) -> Result<Self, EntityError> {
+        Self::settled(data, Trust::Refuse)
+    }
+}
+
+impl Entity {
+    /// Validates an entity of a file.
+    pub(crate) fn settled(data: EntityData, trust: Trust) -> Result<Self, EntityError> {
         let entered = IntoDefinition::enter(DefinitionData::from(data.definition))?;
         let mut record = data.knowledge;
         if let Some(record) = &record {
             record.validate()?;
         }
+        trust.settle(&mut record, &entered.definition)?;
         entered.note(&mut record);
         Ok(Self::new(data.id, data.name, entered.definition, record))
     }

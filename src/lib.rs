@@ -32,6 +32,7 @@ mod nearest;
 mod projector;
 mod query;
 mod shapes;
+mod trust;
 mod units;
 mod written;
 
@@ -41,6 +42,7 @@ pub use entity::{Entity, EntityError};
 pub use file::{AtomicFile, InvalidModel, ModelError, ReadError, WriteError};
 pub use model::Model;
 pub use projector::Projector;
+pub use trust::Trust;
 pub use units::Units;
 
 pub use glam::{self, DVec3};
@@ -51,7 +53,7 @@ pub use perpend_kernel::{
 };
 pub use perpend_knowledge::{
     self as knowledge, Basis, Classification, Cleaning, Definitions, Intent, Item, Kind, Operation, Origin, Record,
-    Relation, Relationship, Representation,
+    Refuted, Relation, Relationship, Representation,
 };
 pub use perpend_projection::{
     self as projection, Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Prepared, Query,

@@ -11,6 +11,7 @@ use crate::file::error::{InvalidModel, ModelError};
 use crate::file::outline::{Outline, line_at};
 use crate::file::syntax;
 use crate::model::Model;
+use crate::trust::Trust;
 use crate::units::Units;
 
 /// The format that this version reads and writes.
@@ -35,7 +36,7 @@ fn bare<'de, D: serde::Deserializer<'de>>(deserializer: D) -> Result<Option<u64>
 }
 
 /// Reads and validates a model.
-pub(super) fn read(text: &str) -> Result<Model, ModelError> {
+pub(super) fn read(text: &str, trust: Trust) -> Result<Model, ModelError> {
     let text = text.strip_prefix('\u{feff}').unwrap_or(text); // a byte order mark
     let outline = Outline::of(text);
     check_format(text, &outline)?;
@@ -52,10 +53,11 @@ pub(super) fn read(text: &str) -> Result<Model, ModelError> {
         if id.get() == u64::MAX {
             return Err(wrong(InvalidModel::LastId));
         }
-        entities.push(entity.try_into().map_err(|error| {
+        entities.push(Entity::settled(entity, trust).map_err(|error| {
             wrong(match error {
                 EntityError::Definition(error) => error.into(),
                 EntityError::Knowledge(error) => error.into(),
+                EntityError::FalseClass(error) => error.into(),
             })
         })?);
     }

@@ -5,7 +5,9 @@ use std::io;
 use std::path::PathBuf;
 
 use perpend_kernel::{EntityId, InvalidDefinition};
-use perpend_knowledge::NonFinite;
+use perpend_knowledge::{NonFinite, Refuted};
+
+use crate::trust::FIELD;
 
 /// Why a model could not be read from a file.
 #[derive(Debug, thiserror::Error)]
@@ -130,4 +132,7 @@ pub enum InvalidModel {
     /// A number of a record is not finite.
     #[error("knowledge: {0}")]
     Knowledge(#[from] NonFinite),
+    /// A record states a class that its definition is proved not to have.
+    #[error("knowledge: {FIELD}: {0}")]
+    FalseClass(#[from] Refuted),
 }

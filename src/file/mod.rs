@@ -15,6 +15,7 @@ pub use atomic::{AtomicFile, WriteError};
 pub use error::{InvalidModel, ModelError, ReadError};
 
 use crate::model::Model;
+use crate::trust::Trust;
 
 impl Model {
     /// Reads a model from a file.
@@ -23,6 +24,15 @@ impl Model {
     ///
     /// What is wrong, with the file, the line, and the entity where there is one: see [`ReadError`].
     pub fn read(path: impl AsRef<Path>) -> Result<Self, ReadError> {
+        Self::read_with(path, Trust::Refuse)
+    }
+
+    /// As [`read`](Self::read), and says what happens to knowledge that is false.
+    ///
+    /// # Errors
+    ///
+    /// As [`read`](Self::read).
+    pub fn read_with(path: impl AsRef<Path>, trust: Trust) -> Result<Self, ReadError> {
         let path = path.as_ref();
         let failed = |source| ReadError::Io { path: path.to_owned(), source };
         if fs::metadata(path).map_err(failed)?.is_dir() {
@@ -34,7 +44,8 @@ impl Model {
             let line = 1 + error.as_bytes()[..at].iter().filter(|byte| **byte == b'\n').count();
             ReadError::NotText { path: path.to_owned(), line }
         })?;
-        Self::from_ron(&text).map_err(|source| ReadError::Model { path: path.to_owned(), source: source.into() })
+        Self::from_ron_with(&text, trust)
+            .map_err(|source| ReadError::Model { path: path.to_owned(), source: source.into() })
     }
 
     /// Reads a model from the text of a file.
@@ -43,7 +54,16 @@ impl Model {
     ///
     /// What is wrong, with the line, and the entity where there is one: see [`ModelError`].
     pub fn from_ron(text: &str) -> Result<Self, ModelError> {
-        data::read(text)
+        Self::from_ron_with(text, Trust::Refuse)
+    }
+
+    /// As [`from_ron`](Self::from_ron), and says what happens to knowledge that is false.
+    ///
+    /// # Errors
+    ///
+    /// As [`from_ron`](Self::from_ron).
+    pub fn from_ron_with(text: &str, trust: Trust) -> Result<Self, ModelError> {
+        data::read(text, trust)
     }
 
     /// Writes the model to a file, whole or not at all: whatever happens, the path holds the old file or the new one.

@@ -47,10 +47,12 @@ impl Refuted {
 
 fn deviates(measured: Option<f64>, bound: Option<f64>, tolerance: f64) -> String {
     let far = match (measured, bound) {
-        (Some(measured), Some(bound)) => format!("the definition is {measured:e} from it (proven: at most {bound:e})"),
-        (Some(measured), None) => format!("the definition is {measured:e} from it, and is not built as one"),
-        (None, Some(bound)) => format!("the definition is proven within {bound:e} of it only"),
+        (Some(measured), Some(bound)) => {
+            format!("the definition is {measured:.3e} from it (proven: at most {bound:.3e})")
+        }
+        (Some(measured), None) => format!("the definition is {measured:.3e} from it, and is not built as one"),
+        (None, Some(bound)) => format!("the definition is proven within {bound:.3e} of it only"),
         (None, None) => "the definition is not built as one".to_owned(),
     };
-    format!("{far}, more than {tolerance:e}: correct it, or have the class acquired again")
+    format!("{far}, more than {tolerance:.3e}: correct it, or have the class acquired again")
 }
