@@ -362,3 +362,28 @@ fn moved(random: &mut Random, definition: &Definition, off: f64) -> Definition {
         }
     }
 }
+
+#[test]
+fn a_line_that_runs_back_on_itself_is_the_set_that_it_covers() {
+    let points = [0.0, 3.0, -1.0, 2.0].map(|x| DVec3::new(x, 2.0 * x, 1.0)).to_vec();
+    let curve = NurbsCurve::new(1, vec![0.0, 0.0, 1.0, 2.0, 3.0, 3.0], points, None).expect("valid");
+    let item = recognised(&curve.into());
+    let Kind::Line { origin, direction, range } = item.value else { panic!("{:?}", item.value) };
+    let ends = [origin + range.0 * direction, origin + range.1 * direction].map(|p| p.x);
+    let (low, high) = (ends[0].min(ends[1]), ends[0].max(ends[1]));
+    assert!((low + 1.0).abs() < 1e-14 && (high - 3.0).abs() < 1e-14, "{ends:?}");
+    assert!(gap(&item) < 1e-12, "{:e}", gap(&item));
+}
+
+#[test]
+fn an_arc_is_refused_where_its_range_stops_short_or_goes_too_far() {
+    let circle = Circle::new(Frame::WORLD, 2.0, (0.0, 2.0)).expect("valid");
+    let definition: Definition = circle.to_nurbs().expect("valid").into();
+    let tolerance = default_tolerance(&definition);
+    let stated = |sweep| Kind::Circle { centre: DVec3::ZERO, axis: DVec3::Z, xdir: DVec3::X, radius: 2.0, sweep };
+    assert!(prove(&stated((0.0, 2.0)), &definition, tolerance).is_ok());
+    for sweep in [(0.0, 2.001), (0.0, 1.999), (0.001, 2.0), (2.0, 0.0), (0.0, TAU)] {
+        let refuted = prove(&stated(sweep), &definition, tolerance).expect_err("another arc");
+        assert!(refuted.deviation().is_some_and(|off| off >= 1e-3), "{sweep:?}: {refuted}");
+    }
+}
