@@ -116,8 +116,9 @@ pub struct Ties {
     pub points: Vec<FootPoint>,
     /// The connected sets of parameters that hold all other points within the gap, each covered by boxes.
     pub continua: Vec<Continuum>,
-    /// Proven: every point of the entity within the gap of the nearest lies in `continua` or belongs to the foot of one of
-    /// `points`. False where the work bound was met first.
+    /// Every leaf that could hold a point within the gap of the nearest was searched to the end: each of its boxes is proven to
+    /// hold none, or belongs to a foot or a continuum that was found. That two feet of one valley are one is told by samples between
+    /// them, so feet parted by a low ridge may be given as one. False where the work bound was met, or the nearest foot was lost.
     pub complete: bool,
 }
 
