@@ -52,8 +52,8 @@ pub use perpend_kernel::{
     Sphere, SurfaceData, Torus,
 };
 pub use perpend_knowledge::{
-    self as knowledge, Basis, Classification, Cleaning, Definitions, Intent, Item, Kind, Operation, Origin, Record,
-    Refuted, Relation, Relationship, Representation,
+    self as knowledge, Basis, Categories, Category, Classification, Cleaning, Definitions, Intent, Item, Kind,
+    Operation, Origin, Record, Refuted, Relation, Relationship, Representation,
 };
 pub use perpend_projection::{
     self as projection, Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Prepared, Query,

@@ -14,6 +14,11 @@ pub enum Basis {
         /// Bound of the deviation that the proof leaves, in the unit of the item.
         gap: f64,
     },
+    /// Computed numerically from the definition, without proof.
+    Measured {
+        /// An estimate of the error, in the unit of the item.
+        error: f64,
+    },
     /// Fitted to data.
     Fitted {
         /// The largest deviation from the data.

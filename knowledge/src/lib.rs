@@ -6,6 +6,7 @@
 //! in serde; numbers of a record are finite, which [`Record::validate`] checks.
 
 mod bare;
+mod category;
 mod classification;
 mod definitions;
 mod finite;
@@ -16,6 +17,7 @@ mod record;
 mod relationship;
 mod representation;
 
+pub use category::{Categories, Category, InvalidCategories};
 pub use classification::{Classification, Kind, Origin};
 pub use definitions::Definitions;
 pub use finite::NonFinite;

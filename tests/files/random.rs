@@ -107,6 +107,7 @@ fn basis() -> impl Strategy<Value = Basis> {
     prop_oneof![
         Just(Basis::Defined),
         number().prop_map(|gap| Basis::Proved { gap }),
+        number().prop_map(|error| Basis::Measured { error }),
         (number(), any::<u64>()).prop_map(|(residual, points)| Basis::Fitted { residual, points }),
         Just(Basis::Declared),
     ]
