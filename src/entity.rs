@@ -98,7 +98,7 @@ impl Entity {
     /// What queries need of it, built on first use and shared by threads.
     #[must_use]
     pub fn prepared(&self) -> &Arc<Prepared> {
-        self.prepared.get_or_init(|| Arc::new(Prepared::new(Arc::clone(&self.definition))))
+        self.prepared.get_or_init(|| Arc::new(Prepared::new(Arc::clone(&self.definition), self.record.as_ref())))
     }
 }
 

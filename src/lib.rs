@@ -56,8 +56,8 @@ pub use perpend_knowledge::{
     Operation, Origin, Record, Refuted, Relation, Relationship, Representation,
 };
 pub use perpend_projection::{
-    self as projection, Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Prepared, Query,
-    QueryError, QueryOptions, Scratch, Statistics, Ties,
+    self as projection, Continuum, Decomposition, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place,
+    Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch, Settings, Statistics, Ties,
 };
 
 /// The program of the README, run as a test.

@@ -78,7 +78,7 @@ impl Tally {
 /// Queries one entity, and judges every answer.
 fn attack(name: &str, shape: &Shape, points: &[DVec3], options: &QueryOptions) -> Tally {
     let definition = Arc::new(shape.definition());
-    let prepared = Prepared::new(definition.clone());
+    let prepared = Prepared::new(definition.clone(), None);
     let oracle = Oracle::new(shape.clone());
     let gap = options.gap.unwrap_or(1e-9 * oracle.size);
     let mut tally = Tally::default();

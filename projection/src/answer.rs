@@ -66,6 +66,8 @@ pub enum Multiplicity {
 /// The solver that proposed an answer.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Method {
+    /// The closed form of a shape that is known and proved.
+    Analytic,
     /// The prepared tree of Bézier pieces and its certificate.
     Hierarchy,
 }

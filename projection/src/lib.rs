@@ -1,15 +1,22 @@
 //! Certified nearest points on curves and surfaces.
 
+mod analytic;
 mod answer;
+mod closed_form;
+mod dispatch;
+mod foot;
 mod hierarchy;
 mod landmarks;
+mod plan;
 mod prepared;
 mod query;
 mod scratch;
+mod solver;
 mod statistics;
 mod tree;
 
 pub use answer::{Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Ties};
+pub use plan::{Decomposition, Plan, Reason, Settings};
 pub use prepared::Prepared;
 pub use query::{Query, QueryError, QueryOptions};
 pub use scratch::Scratch;

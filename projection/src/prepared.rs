@@ -1,37 +1,56 @@
 //! An entity made ready for queries.
 
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use perpend_kernel::{Definition, Direction, NurbsCurve, NurbsSurface};
+use perpend_kernel::Definition;
+use perpend_knowledge::Record;
 
-use crate::answer::{Continuum, FootPoint, Method, Multiplicity, Parameter, Place, Ties};
-use crate::hierarchy::{Hierarchy, Solution, Tie, TieSet};
-use crate::landmarks::{Landmarks, turns, vanishes};
+use crate::answer::{Continuum, FootPoint, Method, Ties};
+use crate::closed_form::ClosedForm;
+use crate::dispatch::{Dispatched, dispatch};
+use crate::foot::Reader;
+use crate::hierarchy::{Hierarchy, TieSet};
+use crate::landmarks::Landmarks;
+use crate::plan::Plan;
 use crate::query::Query;
 use crate::scratch::Scratch;
+use crate::solver::{Solved, Solver};
 
 /// An entity made ready for queries: built once, immutable, shared by threads.
 #[derive(Debug)]
 pub struct Prepared {
     definition: Arc<Definition>,
+    size: f64,
     landmarks: Landmarks,
-    hierarchy: Hierarchy,
+    plan: Plan,
+    closed_form: Option<ClosedForm>,
+    /// Built when the first query needs it: where a closed form answers, none may.
+    hierarchy: OnceLock<Hierarchy>,
 }
 
 impl Prepared {
-    /// Prepares a definition.
+    /// Prepares a definition with what is known of it, and makes the plan by which its queries are answered.
+    ///
+    /// Knowledge is proved before it is believed: a record may be wrong, and answers stay true. What is not known and matters is
+    /// acquired: the class, by recognition.
     #[must_use]
-    pub fn new(definition: Arc<Definition>) -> Self {
+    pub fn new(definition: Arc<Definition>, record: Option<&Record>) -> Self {
         let landmarks = Landmarks::of(&definition);
-        let hierarchy = Hierarchy::new(&definition, &landmarks.cusps);
-        Self { definition, landmarks, hierarchy }
+        let Dispatched { plan, closed_form } = dispatch(&definition, record, &landmarks);
+        Self { size: definition.size(), definition, landmarks, plan, closed_form, hierarchy: OnceLock::new() }
     }
 
     /// The definition.
     #[must_use]
     pub fn definition(&self) -> &Arc<Definition> {
         &self.definition
+    }
+
+    /// How queries are answered, and why so.
+    #[must_use]
+    pub fn plan(&self) -> &Plan {
+        &self.plan
     }
 
     /// The nearest point of the entity, with its proof; none where nothing lies within the query's `max_distance`.
@@ -44,163 +63,40 @@ impl Prepared {
     /// the look at pieces that are farther away than it.
     #[must_use]
     pub fn project_near(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Option<FootPoint> {
-        let solution = self.hierarchy.project(query, hint, &mut scratch.hierarchy)?;
-        scratch.statistics += solution.statistics;
-        Some(self.answer(&solution))
+        if let Some(closed_form) = &self.closed_form
+            && query.options.method.unwrap_or(self.plan.method) == closed_form.method()
+        {
+            match closed_form.solve(query, hint, scratch) {
+                Solved::Foot(solution) => return Some(self.reader().answer(&solution, closed_form.method())),
+                Solved::Beyond => return None,
+                Solved::Declined => scratch.statistics.declined += 1,
+            }
+        }
+        match self.hierarchy().solve(query, hint, scratch) {
+            Solved::Foot(solution) => Some(self.reader().answer(&solution, Method::Hierarchy)),
+            Solved::Beyond | Solved::Declined => None,
+        }
     }
 
     /// All nearest points of the entity, within the query's gap; none where nothing lies within its `max_distance`.
     #[must_use]
     pub fn project_ties(&self, query: &Query, scratch: &mut Scratch) -> Option<Ties> {
-        let TieSet { nearest, feet, continua, complete } = self.hierarchy.ties(query, &mut scratch.hierarchy)?;
+        let hierarchy = self.hierarchy();
+        let TieSet { nearest, feet, continua, complete } = hierarchy.ties(query, &mut scratch.hierarchy)?;
+        let answer = |local| self.reader().answer(&hierarchy.in_model_units(local), Method::Hierarchy);
         Some(Ties {
-            nearest: self.answer(&nearest),
-            points: feet.iter().map(|foot| self.answer(foot)).collect(),
+            nearest: answer(&nearest),
+            points: feet.iter().map(answer).collect(),
             continua: continua.into_iter().map(|boxes| Continuum { boxes }).collect(),
             complete,
         })
     }
 
-    fn answer(&self, solution: &Solution) -> FootPoint {
-        let frame = &self.hierarchy.frame;
-        let solution = &self.on_lower_side(solution.clone());
-        let distance = frame.length(solution.distance);
-        let lower_bound = frame.length(solution.lower_bound).min(distance);
-        let multiplicity = match solution.tie {
-            Tie::None => Multiplicity::Unique,
-            Tie::Apart => Multiplicity::Tied,
-            Tie::Connected => Multiplicity::Continuum,
-        };
-        let (parameter, point, place, normal) = match &*self.definition {
-            Definition::NurbsCurve(curve) => {
-                let u = solution.u;
-                (Parameter::Curve(u), curve.point(u), self.place_on_curve(curve, u), None)
-            }
-            Definition::NurbsSurface(surface) => {
-                let (u, v) = (solution.u, solution.v);
-                let (place, normal) = self.place_on_surface(surface, u, v, solution.normal);
-                (Parameter::Surface(u, v), surface.point(u, v), place, normal)
-            }
-        };
-        let side = normal.map(|normal| -solution.offset.dot(normal));
-        FootPoint {
-            parameter,
-            point,
-            distance,
-            lower_bound,
-            place,
-            multiplicity,
-            normal,
-            signed_distance: side.map(|side| if side < 0.0 { -distance } else { distance }),
-            method: Method::Hierarchy,
-        }
+    fn hierarchy(&self) -> &Hierarchy {
+        self.hierarchy.get_or_init(|| Hierarchy::new(&self.definition, &self.plan.settings.cuts))
     }
 
-    /// A foot on a seam has two parameters: the lower one is given, where both are one point but for rounding.
-    ///
-    /// The ends of a definition that closes only to an ulp of its coordinates may differ by more than rounding in the entity's own;
-    /// then the foot stays where it was found, since the distance belongs to it.
-    fn on_lower_side(&self, mut solution: Solution) -> Solution {
-        let lower = |closed: bool, u: f64, (first, last): (f64, f64)| if closed && u == last { first } else { u };
-        let closed = self.landmarks.closed;
-        let at = |u: f64, v: f64| match &*self.definition {
-            Definition::NurbsCurve(curve) => curve.point(u),
-            Definition::NurbsSurface(surface) => surface.point(u, v),
-        };
-        let (u, v) = match &*self.definition {
-            Definition::NurbsCurve(curve) => (lower(closed[0], solution.u, curve.domain()), solution.v),
-            Definition::NurbsSurface(surface) => (
-                lower(closed[0], solution.u, surface.domain(Direction::U)),
-                lower(closed[1], solution.v, surface.domain(Direction::V)),
-            ),
-        };
-        if (u, v) != (solution.u, solution.v) {
-            let moved = (at(u, v) - at(solution.u, solution.v)) * self.hierarchy.frame.scale;
-            let offset = solution.offset + moved;
-            if moved.length() <= 16.0 * f64::EPSILON * (1.0 + solution.distance) {
-                (solution.u, solution.v, solution.offset, solution.distance) = (u, v, offset, offset.length());
-                solution.lower_bound = solution.lower_bound.min(solution.distance);
-            }
-        }
-        solution
-    }
-
-    fn place_on_curve(&self, curve: &NurbsCurve, u: f64) -> Place {
-        let (first, last) = curve.domain();
-        let (closed, at_end) = (self.landmarks.closed[0], u == first || u == last);
-        let is_break = self.landmarks.breaks[0].contains(&u);
-        if !at_end && !is_break && !self.landmarks.cusps.contains(&u) {
-            return Place::Interior;
-        }
-        let (mut before, mut after) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
-        curve.derivatives_from_left(if at_end && closed { last } else { u }, &mut before);
-        curve.derivatives(if at_end && closed { first } else { u }, &mut after);
-        let cusp = vanishes(before[1], curve) || vanishes(after[1], curve);
-        match (at_end, closed) {
-            (true, false) => Place::End,
-            _ if cusp => Place::Cusp,
-            _ if turns(before[1], after[1]) => Place::Crease,
-            (true, true) => Place::Seam,
-            (false, _) => Place::Interior,
-        }
-    }
-
-    fn place_on_surface(&self, surface: &NurbsSurface, u: f64, v: f64, normal: DVec3) -> (Place, Option<DVec3>) {
-        let landmarks = &self.landmarks;
-        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
-        let at = [u, v];
-        let on = |direction: usize| at[direction] == ends[direction].0 || at[direction] == ends[direction].1;
-        let pole = (0..2)
-            .any(|d| (landmarks.poles[d][0] && at[d] == ends[d].0) || (landmarks.poles[d][1] && at[d] == ends[d].1));
-        if pole {
-            return (Place::Pole, None);
-        }
-        let open_edge = |d: usize| on(d) && !landmarks.closed[d];
-        let around = |d: usize| (on(d) && landmarks.closed[d]) || landmarks.breaks[d].contains(&at[d]);
-        let mut normal = (normal != DVec3::ZERO).then_some(normal);
-        let mut crease = false;
-        if around(0) || around(1) {
-            (normal, crease) = self.normals_around(surface, [u, v], [around(0), around(1)]);
-        }
-        let place = if normal.is_none() && !crease {
-            Place::Cusp
-        } else if open_edge(0) && open_edge(1) {
-            Place::Corner
-        } else if crease {
-            Place::Crease
-        } else if (0..2).any(|d| on(d) && landmarks.closed[d]) {
-            Place::Seam
-        } else if open_edge(0) || open_edge(1) {
-            Place::Edge
-        } else {
-            Place::Interior
-        };
-        (place, normal)
-    }
-
-    /// The mean of the unit normals on all sides of a seam or break, and whether they differ.
-    fn normals_around(&self, surface: &NurbsSurface, at: [f64; 2], around: [bool; 2]) -> (Option<DVec3>, bool) {
-        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
-        let mut normals: smallvec::SmallVec<[DVec3; 4]> = smallvec::SmallVec::new();
-        for below in [[false, false], [true, false], [false, true], [true, true]] {
-            if (0..2).any(|d| below[d] && !around[d]) {
-                continue;
-            }
-            // the far side of a seam lies at the other end of the domain
-            let side = [0, 1].map(|d| {
-                let on_seam = around[d] && (at[d] == ends[d].0 || at[d] == ends[d].1);
-                match (on_seam, below[d]) {
-                    (true, true) => ends[d].1,
-                    (true, false) => ends[d].0,
-                    (false, _) => at[d],
-                }
-            });
-            let mut d = [DVec3::ZERO; 4];
-            surface.derivatives_from(side[0], side[1], below, 1, &mut d);
-            normals.extend(d[2].cross(d[1]).try_normalize());
-        }
-        let crease = normals.windows(2).any(|pair| turns(pair[0], pair[1]));
-        let sum: DVec3 = normals.iter().sum();
-        (sum.try_normalize(), crease)
+    fn reader(&self) -> Reader<'_> {
+        Reader { definition: &self.definition, landmarks: &self.landmarks, size: self.size }
     }
 }

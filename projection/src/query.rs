@@ -2,6 +2,11 @@
 
 use glam::DVec3;
 
+use crate::answer::Method;
+
+/// The gap of a query that asks for none, as a share of the entity's size.
+pub(crate) const DEFAULT_GAP: f64 = 1e-9;
+
 /// What a query asks for. The default is what an inspection wants; none of these is part of what was prepared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QueryOptions {
@@ -14,13 +19,16 @@ pub struct QueryOptions {
     pub max_distance: Option<f64>,
     /// Feet farther than this from one another are different feet, in the model's unit; none: 1e-6 times the size.
     pub coincidence: Option<f64>,
+    /// The solver that is asked first; none: the entity's plan's. A solver that the entity does not have is passed over: the answer says which
+    /// one answered.
+    pub method: Option<Method>,
     /// How often a query may split a form before it answers with the gap that it reached.
     pub work: u32,
 }
 
 impl Default for QueryOptions {
     fn default() -> Self {
-        Self { gap: None, max_distance: None, coincidence: None, work: 20_000 }
+        Self { gap: None, max_distance: None, coincidence: None, method: None, work: 20_000 }
     }
 }
 

@@ -7,6 +7,8 @@ use serde::{Deserialize, Serialize};
 pub struct Statistics {
     /// Queries answered.
     pub queries: u64,
+    /// Queries that the solver which was asked first declined, and the certified hierarchy answered.
+    pub declined: u64,
     /// Boxes of the tree looked at.
     pub boxes: u64,
     /// Leaves whose form was made, restarts included.
@@ -24,6 +26,7 @@ pub struct Statistics {
 impl std::ops::AddAssign for Statistics {
     fn add_assign(&mut self, other: Self) {
         self.queries += other.queries;
+        self.declined += other.declined;
         self.boxes += other.boxes;
         self.forms += other.forms;
         self.subdivisions += other.subdivisions;

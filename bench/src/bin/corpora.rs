@@ -45,7 +45,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         let definition = Arc::new(entity.definition()?);
         let (size, reach) = (definition.size(), definition.reach());
         let start = Instant::now();
-        let prepared = Prepared::new(definition);
+        let prepared = Prepared::new(definition, None);
         let preparation = start.elapsed().as_secs_f64() * 1e3;
         let mut scratch = Scratch::default();
         let ask = |row: &perpend_bench::Row, scratch: &mut Scratch| {

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
-use perpend::{Method, Model, QueryOptions};
+use perpend::{Model, QueryOptions};
 
 use crate::args::ProjectArguments;
 use crate::error::CommandError;
@@ -34,8 +34,6 @@ const BATCH: usize = 4096;
 const NAMED: usize = 20;
 
 pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError> {
-    // Until there are more methods, the one that can be named is the one that answers.
-    let (None | Some(Method::Hierarchy)) = arguments.method;
     let file = arguments.output.as_deref().filter(|path| path.as_os_str() != "-");
     if let Some(path) = file
         && is_same_file(path, &arguments.model)
@@ -64,7 +62,12 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
     let columns = points.header().map_err(|problem| source.wrong(problem))?;
     let target = target(arguments, &source, &columns)?;
-    let options = QueryOptions { gap: arguments.gap, max_distance: arguments.max_distance, ..QueryOptions::default() };
+    let options = QueryOptions {
+        gap: arguments.gap,
+        max_distance: arguments.max_distance,
+        method: arguments.method,
+        ..QueryOptions::default()
+    };
     let layout = Layout { columns: &columns, normals: arguments.normals };
     let engine = Engine::new(&model, target, options, layout);
 

@@ -35,14 +35,17 @@ use smallvec::SmallVec;
 
 use self::certify::{Memory, Outcome, Part, certify};
 use self::form::{rounding_bound, rounding_factor};
-pub(crate) use self::frame::Frame;
+use self::frame::Frame;
 use self::jet::Jet;
 use self::leaf::Leaf;
 use self::newton::{Domain, Found, Search};
 use self::piece::Piece;
 use self::state::{Foot, Goal, State};
 pub(crate) use self::ties::TieSet;
-use crate::query::Query;
+use crate::answer::Method;
+use crate::query::{DEFAULT_GAP, Query};
+use crate::scratch::Scratch;
+use crate::solver::{Solution, Solved, Solver, Tie, unit_normal};
 use crate::statistics::Statistics;
 use crate::tree::{BoxTree, Candidate};
 
@@ -70,7 +73,7 @@ const CROSSINGS: u32 = 4;
 /// An entity's leaves and their tree.
 #[derive(Debug)]
 pub(crate) struct Hierarchy {
-    pub(crate) frame: Frame,
+    frame: Frame,
     leaves: Vec<Leaf>,
     tree: BoxTree,
     /// The definition's parameters, in u and in v.
@@ -88,7 +91,7 @@ pub(crate) struct Workspace {
 
 /// What the solver found, in the entity's own coordinates.
 #[derive(Debug, Clone)]
-pub(crate) struct Solution {
+pub(crate) struct LocalSolution {
     /// Parameters of the definition.
     pub u: f64,
     pub v: f64,
@@ -102,12 +105,20 @@ pub(crate) struct Solution {
     pub statistics: Statistics,
 }
 
-/// What was seen of other feet.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Tie {
-    None,
-    Apart,
-    Connected,
+impl Solver for Hierarchy {
+    fn method(&self) -> Method {
+        Method::Hierarchy
+    }
+
+    fn solve(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Solved {
+        match self.project(query, hint, &mut scratch.hierarchy) {
+            None => Solved::Beyond,
+            Some(solution) => {
+                scratch.statistics += solution.statistics;
+                Solved::Foot(self.in_model_units(&solution))
+            }
+        }
+    }
 }
 
 impl Hierarchy {
@@ -134,7 +145,12 @@ impl Hierarchy {
     }
 
     /// The nearest point of the entity; none where it is proven that nothing is within the query's `max_distance`. `hint` is any point of the entity.
-    pub(crate) fn project(&self, query: &Query, hint: Option<DVec3>, workspace: &mut Workspace) -> Option<Solution> {
+    pub(crate) fn project(
+        &self,
+        query: &Query,
+        hint: Option<DVec3>,
+        workspace: &mut Workspace,
+    ) -> Option<LocalSolution> {
         let mut state = self.start(query);
         let hint = hint.map_or(f64::INFINITY, |point| self.frame.enter(point).distance(state.point));
         self.walk(&mut state, hint, workspace);
@@ -144,6 +160,20 @@ impl Hierarchy {
         // none is a claim, too: it needs its proof
         let beyond = self.frame.length(solution.distance) > limit && state.tau().min(state.open) >= state.goal.wanted;
         (!beyond).then_some(solution)
+    }
+
+    /// A solution in the model's unit.
+    pub(crate) fn in_model_units(&self, local: &LocalSolution) -> Solution {
+        let LocalSolution { u, v, normal, tie, .. } = *local;
+        Solution {
+            u,
+            v,
+            distance: self.frame.length(local.distance),
+            lower_bound: self.frame.length(local.lower_bound),
+            normal,
+            offset: local.offset / self.frame.scale,
+            tie,
+        }
     }
 
     fn coincidence(&self, query: &Query) -> f64 {
@@ -179,7 +209,8 @@ impl Hierarchy {
         let leaf = &self.leaves[index as usize];
         let best = Part { leaf, index, within: Domain::WHOLE }.foot(found);
         // Whether anything is within a maximum distance is told as finely as by default, however wide the gap.
-        let finest = query.options.max_distance.map_or(f64::INFINITY, |_| 1e-9 * self.frame.size * self.frame.scale);
+        let finest =
+            query.options.max_distance.map_or(f64::INFINITY, |_| DEFAULT_GAP * self.frame.size * self.frame.scale);
         let asked = self.asked_gap(query).min(finest);
         // The proof is sought closer than asked by what rounding may take away again. Where that leaves less than half, or
         // the asked gap is finer than the forms can tell at this distance, the finest gap that they can tell is sought.
@@ -204,7 +235,7 @@ impl Hierarchy {
     }
 
     fn asked_gap(&self, query: &Query) -> f64 {
-        query.options.gap.unwrap_or(1e-9 * self.frame.size) * self.frame.scale
+        query.options.gap.unwrap_or(DEFAULT_GAP * self.frame.size) * self.frame.scale
     }
 
     /// Proves every leaf that could hold a point nearer than `tau`, the nearest box first; then looks for feet in those that can
@@ -243,7 +274,7 @@ impl Hierarchy {
     }
 
     /// Polishes the feet that were met and reads the answer off the least (distance, u, v).
-    fn solution(&self, state: &mut State, coincidence: f64) -> Solution {
+    fn solution(&self, state: &mut State, coincidence: f64) -> LocalSolution {
         let lower = state.tau().min(state.open) - self.reserve - 10.0 * ROUNDING * state.point.length();
         let (best, jet) = (state.best, state.best_jet);
         let mut winner = self.polish(&best, jet, state);
@@ -255,7 +286,7 @@ impl Hierarchy {
             }
         }
         let tie = self.tie(&winner, &others, coincidence, state);
-        Solution { tie, ..self.solution_at(&winner.0, lower.max(0.0), state) }
+        LocalSolution { tie, ..self.solution_at(&winner.0, lower.max(0.0), state) }
     }
 
     /// The order of feet: the nearest first, then the one with the lower parameters.
@@ -276,7 +307,7 @@ impl Hierarchy {
     }
 
     /// A foot at the definition's parameters as they are reported.
-    fn solution_at(&self, foot: &Foot, lower_bound: f64, state: &State) -> Solution {
+    fn solution_at(&self, foot: &Foot, lower_bound: f64, state: &State) -> LocalSolution {
         let leaf = &self.leaves[foot.leaf as usize];
         let (s, t) = self.snap(foot, state);
         let (u, v) = leaf.parameters(s, t);
@@ -284,12 +315,12 @@ impl Hierarchy {
         let c = leaf.jet(s, t).cartesian();
         let offset = c.p - (state.point - leaf.origin);
         let distance = offset.length();
-        Solution {
+        LocalSolution {
             u,
             v,
             distance,
             lower_bound: lower_bound.min(distance),
-            normal: normal_direction(c.ps, c.pt),
+            normal: unit_normal(c.ps, c.pt),
             offset,
             tie: Tie::None,
             statistics: state.statistics,
@@ -482,13 +513,6 @@ fn split_bent(pieces: Vec<Piece>) -> Vec<Piece> {
     whole
 }
 
-/// The unit vector along `a × b`; zero where the two are parallel to rounding or one of them vanishes.
-fn normal_direction(a: DVec3, b: DVec3) -> DVec3 {
-    let n = a.cross(b);
-    let (length, of) = (n.length(), a.length() * b.length());
-    if length > 1e-12 * of && of > 0.0 { n / length } else { DVec3::ZERO }
-}
-
 fn holds((from, to): (f64, f64), x: f64) -> bool {
     from <= x && x <= to
 }
@@ -607,7 +631,7 @@ mod tests {
                 };
                 for hint in [corner, foot] {
                     let hinted = hierarchy.project(&query, Some(hint), &mut workspace).expect("no limit");
-                    let bits = |s: &Solution| [s.u, s.v, s.distance, s.lower_bound].map(f64::to_bits);
+                    let bits = |s: &LocalSolution| [s.u, s.v, s.distance, s.lower_bound].map(f64::to_bits);
                     assert_eq!(bits(&plain), bits(&hinted));
                 }
             }

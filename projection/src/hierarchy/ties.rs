@@ -17,9 +17,10 @@ use super::form::rounding_bound;
 use super::leaf::Leaf;
 use super::newton::{self, Domain, Found, Search};
 use super::state::{Foot, State};
-use super::{Hierarchy, ROUNDING, Solution, Tie, Workspace, holds, net, squared};
+use super::{Hierarchy, LocalSolution, ROUNDING, Workspace, holds, net, squared};
 use crate::answer::ParameterBox;
 use crate::query::Query;
+use crate::solver::Tie;
 
 /// Undecided boxes are split down to this share of the entity's size, or to the coincidence if that is more.
 const RESOLUTION: f64 = 1.0 / 64.0;
@@ -27,8 +28,8 @@ const RESOLUTION: f64 = 1.0 / 64.0;
 /// All nearest points of an entity.
 #[derive(Debug)]
 pub(crate) struct TieSet {
-    pub nearest: Solution,
-    pub feet: Vec<Solution>,
+    pub nearest: LocalSolution,
+    pub feet: Vec<LocalSolution>,
     /// Sets of touching boxes.
     pub continua: Vec<Vec<ParameterBox>>,
     pub complete: bool,
@@ -87,11 +88,11 @@ impl Hierarchy {
         let at_nearest = |foot: &Foot| foot.point.distance(state.point + nearest.offset) <= coincidence;
         let solution = |foot: &Foot| match at_nearest(foot) {
             true => nearest.clone(),
-            false => Solution { tie: nearest.tie, ..self.solution_at(foot, nearest.lower_bound, &state) },
+            false => LocalSolution { tie: nearest.tie, ..self.solution_at(foot, nearest.lower_bound, &state) },
         };
         let in_continuum = continua.iter().flatten().any(|b| holds(b.u, nearest.u) && holds(b.v, nearest.v));
         let found = in_continuum || feet.iter().any(at_nearest);
-        let mut feet: Vec<Solution> = feet.iter().map(solution).collect();
+        let mut feet: Vec<LocalSolution> = feet.iter().map(solution).collect();
         // where the search lost the nearest foot itself, it may have lost others
         if !found {
             feet.push(nearest.clone());

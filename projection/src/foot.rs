@@ -1,0 +1,161 @@
+//! From a solver's solution to the answer: the definition evaluated there, the place, the normal.
+
+use glam::DVec3;
+use perpend_kernel::{Definition, Direction, NurbsCurve, NurbsSurface};
+
+use crate::answer::{FootPoint, Method, Multiplicity, Parameter, Place};
+use crate::landmarks::{Landmarks, turns, vanishes};
+use crate::solver::{Solution, Tie};
+
+/// Reads answers off the parameters of one definition.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Reader<'a> {
+    pub definition: &'a Definition,
+    pub landmarks: &'a Landmarks,
+    /// The definition's size.
+    pub size: f64,
+}
+
+impl Reader<'_> {
+    /// The answer that a solution of this method is.
+    pub(crate) fn answer(self, solution: &Solution, method: Method) -> FootPoint {
+        let solution = &self.on_lower_side(*solution);
+        let distance = solution.distance;
+        let multiplicity = match solution.tie {
+            Tie::None => Multiplicity::Unique,
+            Tie::Apart => Multiplicity::Tied,
+            Tie::Connected => Multiplicity::Continuum,
+        };
+        let (parameter, point, place, normal) = match self.definition {
+            Definition::NurbsCurve(curve) => {
+                let u = solution.u;
+                (Parameter::Curve(u), curve.point(u), self.place_on_curve(curve, u), None)
+            }
+            Definition::NurbsSurface(surface) => {
+                let (u, v) = (solution.u, solution.v);
+                let (place, normal) = self.place_on_surface(surface, u, v, solution.normal);
+                (Parameter::Surface(u, v), surface.point(u, v), place, normal)
+            }
+        };
+        let side = normal.map(|normal| -solution.offset.dot(normal));
+        FootPoint {
+            parameter,
+            point,
+            distance,
+            lower_bound: solution.lower_bound.min(distance),
+            place,
+            multiplicity,
+            normal,
+            signed_distance: side.map(|side| if side < 0.0 { -distance } else { distance }),
+            method,
+        }
+    }
+
+    /// A foot on a seam has two parameters: the lower one is given, where both are one point but for rounding.
+    ///
+    /// The ends of a definition that closes only to an ulp of its coordinates may differ by more than rounding in the entity's own;
+    /// then the foot stays where it was found, since the distance belongs to it.
+    fn on_lower_side(self, mut solution: Solution) -> Solution {
+        let lower = |closed: bool, u: f64, (first, last): (f64, f64)| if closed && u == last { first } else { u };
+        let closed = self.landmarks.closed;
+        let at = |u: f64, v: f64| match self.definition {
+            Definition::NurbsCurve(curve) => curve.point(u),
+            Definition::NurbsSurface(surface) => surface.point(u, v),
+        };
+        let (u, v) = match self.definition {
+            Definition::NurbsCurve(curve) => (lower(closed[0], solution.u, curve.domain()), solution.v),
+            Definition::NurbsSurface(surface) => (
+                lower(closed[0], solution.u, surface.domain(Direction::U)),
+                lower(closed[1], solution.v, surface.domain(Direction::V)),
+            ),
+        };
+        if (u, v) != (solution.u, solution.v) {
+            let moved = at(u, v) - at(solution.u, solution.v);
+            let offset = solution.offset + moved;
+            if moved.length() <= 16.0 * f64::EPSILON * (self.size + solution.distance) {
+                (solution.u, solution.v, solution.offset, solution.distance) = (u, v, offset, offset.length());
+                solution.lower_bound = solution.lower_bound.min(solution.distance);
+            }
+        }
+        solution
+    }
+
+    fn place_on_curve(self, curve: &NurbsCurve, u: f64) -> Place {
+        let (first, last) = curve.domain();
+        let (closed, at_end) = (self.landmarks.closed[0], u == first || u == last);
+        let is_break = self.landmarks.breaks[0].contains(&u);
+        if !at_end && !is_break && !self.landmarks.cusps.contains(&u) {
+            return Place::Interior;
+        }
+        let (mut before, mut after) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
+        curve.derivatives_from_left(if at_end && closed { last } else { u }, &mut before);
+        curve.derivatives(if at_end && closed { first } else { u }, &mut after);
+        let cusp = vanishes(before[1], curve) || vanishes(after[1], curve);
+        match (at_end, closed) {
+            (true, false) => Place::End,
+            _ if cusp => Place::Cusp,
+            _ if turns(before[1], after[1]) => Place::Crease,
+            (true, true) => Place::Seam,
+            (false, _) => Place::Interior,
+        }
+    }
+
+    fn place_on_surface(self, surface: &NurbsSurface, u: f64, v: f64, normal: DVec3) -> (Place, Option<DVec3>) {
+        let landmarks = self.landmarks;
+        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
+        let at = [u, v];
+        let on = |direction: usize| at[direction] == ends[direction].0 || at[direction] == ends[direction].1;
+        let pole = (0..2)
+            .any(|d| (landmarks.poles[d][0] && at[d] == ends[d].0) || (landmarks.poles[d][1] && at[d] == ends[d].1));
+        if pole {
+            return (Place::Pole, None);
+        }
+        let open_edge = |d: usize| on(d) && !landmarks.closed[d];
+        let around = |d: usize| (on(d) && landmarks.closed[d]) || landmarks.breaks[d].contains(&at[d]);
+        let mut normal = (normal != DVec3::ZERO).then_some(normal);
+        let mut crease = false;
+        if around(0) || around(1) {
+            (normal, crease) = self.normals_around(surface, [u, v], [around(0), around(1)]);
+        }
+        let place = if normal.is_none() && !crease {
+            Place::Cusp
+        } else if open_edge(0) && open_edge(1) {
+            Place::Corner
+        } else if crease {
+            Place::Crease
+        } else if (0..2).any(|d| on(d) && landmarks.closed[d]) {
+            Place::Seam
+        } else if open_edge(0) || open_edge(1) {
+            Place::Edge
+        } else {
+            Place::Interior
+        };
+        (place, normal)
+    }
+
+    /// The mean of the unit normals on all sides of a seam or break, and whether they differ.
+    fn normals_around(self, surface: &NurbsSurface, at: [f64; 2], around: [bool; 2]) -> (Option<DVec3>, bool) {
+        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
+        let mut normals: smallvec::SmallVec<[DVec3; 4]> = smallvec::SmallVec::new();
+        for below in [[false, false], [true, false], [false, true], [true, true]] {
+            if (0..2).any(|d| below[d] && !around[d]) {
+                continue;
+            }
+            // the far side of a seam lies at the other end of the domain
+            let side = [0, 1].map(|d| {
+                let on_seam = around[d] && (at[d] == ends[d].0 || at[d] == ends[d].1);
+                match (on_seam, below[d]) {
+                    (true, true) => ends[d].1,
+                    (true, false) => ends[d].0,
+                    (false, _) => at[d],
+                }
+            });
+            let mut d = [DVec3::ZERO; 4];
+            surface.derivatives_from(side[0], side[1], below, 1, &mut d);
+            normals.extend(d[2].cross(d[1]).try_normalize());
+        }
+        let crease = normals.windows(2).any(|pair| turns(pair[0], pair[1]));
+        let sum: DVec3 = normals.iter().sum();
+        (sum.try_normalize(), crease)
+    }
+}
