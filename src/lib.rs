@@ -26,6 +26,7 @@ mod batch;
 mod edit;
 mod enter;
 mod entity;
+mod explain;
 mod file;
 mod model;
 mod nearest;

@@ -28,6 +28,8 @@ pub(crate) enum Command {
     Check(CheckArguments),
     /// Show the entities of a model and what is known of them
     Show(ShowArguments),
+    /// Explain how an entity's queries are answered, and why so
+    Explain(ExplainArguments),
     /// Project points: the nearest point of an entity, or of the whole model, to each
     Project(ProjectArguments),
 }
@@ -47,6 +49,19 @@ pub(crate) struct ShowArguments {
     /// Show this entity alone, in full
     #[arg(long, value_name = "ID", value_parser = entity_id)]
     pub(crate) entity: Option<EntityId>,
+    /// Write JSON, for programs
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ExplainArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    /// The entity
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: EntityId,
     /// Write JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,

@@ -3,6 +3,7 @@
 mod args;
 mod check;
 mod error;
+mod explain;
 mod names;
 mod project;
 mod report;
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
     let done = match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
+        Command::Explain(arguments) => explain::run(&arguments),
         Command::Project(arguments) => project::run(&arguments),
     };
     match done {
