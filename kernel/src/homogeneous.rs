@@ -37,6 +37,14 @@ pub(crate) fn rational_derivatives(of: &[DVec4], curve: &mut [DVec3]) {
 /// homogeneous one. The NURBS Book, algorithm A4.4 (equation 4.20).
 pub(crate) fn rational_partials(at: impl Fn(usize, usize) -> DVec4, side: usize, surface: &mut [DVec3]) {
     let w = at(0, 0).w;
+    if side == 2 {
+        // the sums below, written out: this order is asked for with every normal
+        let (form, by_v, by_u) = (at(0, 0), at(0, 1), at(1, 0));
+        surface[0] = form.truncate() / w;
+        surface[1] = (by_v.truncate() - by_v.w * surface[0]) / w;
+        surface[2] = (by_u.truncate() - by_u.w * surface[0]) / w;
+        return;
+    }
     for k in 0..side {
         for l in 0..side - k {
             let mut sum = at(k, l).truncate();

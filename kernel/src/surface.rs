@@ -221,8 +221,8 @@ impl NurbsSurface {
     /// Point and partial derivatives at `(u, v)` up to `order` in all: `out[k * (order + 1) + l]` becomes the derivative of
     /// order `k` in u and `l` in v, for `k + l <= order`; other entries are left alone.
     ///
-    /// At a knot the derivatives are those from above (at the end of the domain, from below). Nothing is allocated.
-    /// The NURBS Book, algorithms A3.6 and A4.4.
+    /// At a knot the derivatives are those from above (at the end of the domain, from below). Nothing is allocated. `out[0]` is
+    /// [`point`](Self::point), bit for bit. The NURBS Book, algorithms A3.6 and A4.4.
     ///
     /// # Panics
     ///

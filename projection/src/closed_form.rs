@@ -43,7 +43,16 @@ impl ClosedForm {
         };
         let offset = point - query.point;
         let distance = offset.length();
-        Solution { u, v, distance, lower_bound: lower_bound.clamp(0.0, distance), normal, offset, tie }
+        Solution {
+            u,
+            v,
+            point: Some(point),
+            distance,
+            lower_bound: lower_bound.clamp(0.0, distance),
+            normal,
+            offset,
+            tie,
+        }
     }
 }
 

@@ -29,12 +29,18 @@ impl Reader<'_> {
         let (parameter, point, place, normal) = match self.definition {
             Definition::NurbsCurve(curve) => {
                 let u = solution.u;
-                (Parameter::Curve(u), curve.point(u), self.place_on_curve(curve, u), None)
+                (
+                    Parameter::Curve(u),
+                    solution.point.unwrap_or_else(|| curve.point(u)),
+                    self.place_on_curve(curve, u),
+                    None,
+                )
             }
             Definition::NurbsSurface(surface) => {
                 let (u, v) = (solution.u, solution.v);
                 let (place, normal) = self.place_on_surface(surface, u, v, solution.normal);
-                (Parameter::Surface(u, v), surface.point(u, v), place, normal)
+                let point = solution.point.unwrap_or_else(|| surface.point(u, v));
+                (Parameter::Surface(u, v), point, place, normal)
             }
         };
         let side = normal.map(|normal| -solution.offset.dot(normal));
@@ -74,6 +80,7 @@ impl Reader<'_> {
             let offset = solution.offset + moved;
             if moved.length() <= 16.0 * f64::EPSILON * (self.size + solution.distance) {
                 (solution.u, solution.v, solution.offset, solution.distance) = (u, v, offset, offset.length());
+                solution.point = None;
                 solution.lower_bound = solution.lower_bound.min(solution.distance);
             }
         }

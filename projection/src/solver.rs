@@ -34,6 +34,8 @@ pub(crate) struct Solution {
     /// Parameters of the definition.
     pub u: f64,
     pub v: f64,
+    /// The definition there, where the solver has evaluated it.
+    pub point: Option<DVec3>,
     pub distance: f64,
     pub lower_bound: f64,
     /// Unit vector along `S_u × S_v` at the foot, seen from inside the piece that holds it; zero where it vanishes, and on curves.

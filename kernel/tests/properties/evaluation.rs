@@ -32,6 +32,17 @@ proptest! {
         }
     }
 
+    #[test]
+    fn the_derivative_of_order_zero_is_the_point_bit_for_bit(surface in surface(9), order in 0..3_usize) {
+        for u in parameters(surface.knots(Direction::U)) {
+            for v in parameters(surface.knots(Direction::V)) {
+                let mut d = vec![DVec3::ZERO; (order + 1) * (order + 1)];
+                surface.derivatives(u, v, order, &mut d);
+                prop_assert_eq!(d[0], surface.point(u, v), "at {}, {}", u, v);
+            }
+        }
+    }
+
     /// Leibniz: the derivatives of `w C` are sums of products of those of `w` and `C`.
     ///
     #[test]

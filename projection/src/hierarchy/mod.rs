@@ -168,6 +168,7 @@ impl Hierarchy {
         Solution {
             u,
             v,
+            point: None,
             distance: self.frame.length(local.distance),
             lower_bound: self.frame.length(local.lower_bound),
             normal,
