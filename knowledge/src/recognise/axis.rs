@@ -11,6 +11,12 @@ pub(super) struct Axis {
     pub(super) axis: DVec3,
 }
 
+/// After how many steps a fit that is still bad is given up: of a surface that turns, the first steps leave rounding.
+const PATIENCE: usize = 5;
+
+/// A residual above this share of the rows' extent is bad: a billion times what a class is accepted with.
+const HOPELESS: f64 = 1e-2;
+
 /// What is left to fit at a point: the residual and its derivatives by two turns and two shifts of the axis.
 type Equation = [f64; 5];
 
@@ -22,8 +28,12 @@ type Equation = [f64; 5];
 pub(super) fn fit(rows: &[Vec<DVec3>], meridians: bool) -> Option<Axis> {
     let mut axis = rows.iter().filter_map(|row| through(row)).max_by(|a, b| a.1.total_cmp(&b.1))?.0;
     let (mut with_meridians, mut before) = (false, f64::INFINITY);
-    for _ in 0..32 {
-        let Some(x) = step(&axis.equations(rows, with_meridians)) else { break };
+    for count in 0..32 {
+        let equations = axis.equations(rows, with_meridians);
+        if count == PATIENCE && residual(&equations) > HOPELESS * extent(rows) {
+            return None;
+        }
+        let Some(x) = step(&equations) else { break };
         let (u, v) = axis.axis.any_orthonormal_pair();
         let turned = axis.axis + x[0] * u + x[1] * v;
         let moved = Axis { centre: axis.centre + x[2] * u + x[3] * v, axis: turned.normalize() };
@@ -119,6 +129,16 @@ fn eliminate(group: &mut [Equation], shares: &[f64]) {
         let mean = group.iter().zip(shares).map(|(e, s)| e[column] * s).sum::<f64>() / norm;
         group.iter_mut().zip(shares).for_each(|(e, s)| e[column] -= mean * s);
     }
+}
+
+/// The largest residual.
+fn residual(equations: &[Equation]) -> f64 {
+    equations.iter().map(|e| e[0].abs()).fold(0.0, f64::max)
+}
+
+/// How far the rows extend.
+fn extent(rows: &[Vec<DVec3>]) -> f64 {
+    perpend_kernel::Aabb::around(rows.iter().flatten().copied()).diagonal()
 }
 
 /// The step that makes the residuals least.
