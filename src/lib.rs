@@ -58,7 +58,7 @@ pub use perpend_knowledge::{
 };
 pub use perpend_projection::{
     self as projection, Continuum, Decomposition, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place,
-    Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch, Settings, Statistics, Ties,
+    Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch, Settings, Statistics, Ties, Work,
 };
 
 /// The program of the README, run as a test.

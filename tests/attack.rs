@@ -87,7 +87,7 @@ fn attack(name: &str, shape: &Shape, points: &[DVec3], options: &QueryOptions) -
         let query = Query::new(*p, *options).expect("a finite point");
         scratch.statistics = Default::default();
         let foot = prepared.project(&query, &mut scratch).expect("no distance is too far");
-        let splits = scratch.statistics.subdivisions + scratch.statistics.refinements;
+        let splits = scratch.statistics.proof.subdivisions + scratch.statistics.proof.refinements;
         let found = oracle.nearest(*p);
         let judged = judge(shape, &definition, *p, &foot, gap, found.distance);
         let case = || case(name, *p, &foot, &found, judged.at_foot, splits);

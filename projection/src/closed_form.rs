@@ -63,11 +63,12 @@ impl Solver for ClosedForm {
 
     /// Declines where the shape's proven gap is wider than what is asked, or where the foot's parameter is not to be had as exactly.
     fn solve(&self, query: &Query, _hint: Option<DVec3>, scratch: &mut Scratch) -> Solved {
-        let Some(proposal) = self.analytic.propose(query, &mut scratch.hierarchy, &mut scratch.statistics) else {
+        let Some(proposal) = self.analytic.propose(query, &mut scratch.hierarchy, &mut scratch.statistics.proposal)
+        else {
             return Solved::Declined;
         };
         let solution = self.evaluate(query, &proposal);
-        scratch.statistics.evaluations += 1;
+        scratch.statistics.proposal.evaluations += 1;
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
         if solution.lower_bound > limit {
             scratch.statistics.queries += 1;

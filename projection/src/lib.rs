@@ -20,5 +20,5 @@ pub use plan::{Decomposition, Plan, Reason, Settings};
 pub use prepared::Prepared;
 pub use query::{Query, QueryError, QueryOptions};
 pub use scratch::Scratch;
-pub use statistics::Statistics;
+pub use statistics::{Statistics, Work};
 pub use tree::{BoxTree, Candidate};

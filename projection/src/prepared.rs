@@ -15,7 +15,7 @@ use crate::landmarks::Landmarks;
 use crate::plan::Plan;
 use crate::query::Query;
 use crate::scratch::Scratch;
-use crate::solver::{Solved, Solver};
+use crate::solver::{Proposer, Solved, Solver};
 
 /// An entity made ready for queries: built once, immutable, shared by threads.
 #[derive(Debug)]
@@ -63,14 +63,25 @@ impl Prepared {
     /// the look at pieces that are farther away than it.
     #[must_use]
     pub fn project_near(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Option<FootPoint> {
+        let asked = query.options.method.unwrap_or(self.plan.method);
         if let Some(closed_form) = &self.closed_form
-            && query.options.method.unwrap_or(self.plan.method) == closed_form.method()
+            && asked == closed_form.method()
         {
             match closed_form.solve(query, hint, scratch) {
                 Solved::Foot(solution) => return Some(self.reader().answer(&solution, closed_form.method())),
                 Solved::Beyond => return None,
                 Solved::Declined => scratch.statistics.declined += 1,
             }
+        }
+        if let Some(proposer) = self.proposer(asked)
+            && let Some(proposal) = proposer.propose(query, &mut scratch.statistics.proposal)
+        {
+            let (solved, corrected) = self.hierarchy().prove(query, proposal, scratch);
+            let method = if corrected { Method::Hierarchy } else { proposer.method() };
+            return match solved {
+                Solved::Foot(solution) => Some(self.reader().answer(&solution, method)),
+                Solved::Beyond | Solved::Declined => None,
+            };
         }
         match self.hierarchy().solve(query, hint, scratch) {
             Solved::Foot(solution) => Some(self.reader().answer(&solution, Method::Hierarchy)),
@@ -90,6 +101,13 @@ impl Prepared {
             continua: continua.into_iter().map(|boxes| Continuum { boxes }).collect(),
             complete,
         })
+    }
+
+    /// The solver of this method, where it is one that only proposes.
+    fn proposer(&self, method: Method) -> Option<&dyn Proposer> {
+        match method {
+            Method::Analytic | Method::Hierarchy => None,
+        }
     }
 
     fn hierarchy(&self) -> &Hierarchy {

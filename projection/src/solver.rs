@@ -5,6 +5,7 @@ use glam::DVec3;
 use crate::answer::Method;
 use crate::query::Query;
 use crate::scratch::Scratch;
+use crate::statistics::Work;
 
 /// A solver: immutable, made once from a definition, shared by threads.
 ///
@@ -15,6 +16,15 @@ pub(crate) trait Solver {
 
     /// Answers a query; `hint` is any point of the entity, and changes no bit of the answer.
     fn solve(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Solved;
+}
+
+/// A solver without a bound of its own: what it proposes, the certificate proves or corrects.
+pub(crate) trait Proposer: std::fmt::Debug + Send + Sync {
+    /// Its name in an answer.
+    fn method(&self) -> Method;
+
+    /// Parameters of the definition at which it takes the foot to be (`v` is 0 for a curve); none where it finds nothing.
+    fn propose(&self, query: &Query, work: &mut Work) -> Option<(f64, f64)>;
 }
 
 /// What became of a query.

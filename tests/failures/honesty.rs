@@ -99,7 +99,7 @@ fn every_query_is_bounded_and_its_bounds_hold() {
                 let options = QueryOptions { work, gap: Some(1e-11 * case.size()), ..QueryOptions::default() };
                 let mut projector = case.model.projector(case.id).expect("an entity");
                 let foot = projector.project(p, &options).expect("a good query").expect("no limit");
-                let statistics = projector.statistics();
+                let statistics = projector.statistics().proof;
                 let spent = statistics.subdivisions + statistics.refinements;
                 assert!(spent <= u64::from(work) + 1, "{name}, {p}: {spent} of {work} splits");
                 let finite = [foot.distance, foot.lower_bound, foot.parameter.u(), foot.parameter.v().unwrap_or(0.0)];

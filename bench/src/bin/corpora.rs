@@ -75,7 +75,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
         }
         let n = queries.len() as f64;
         let mut mean = f64::MAX;
-        let statistics = scratch.statistics;
+        let statistics = scratch.statistics.proof;
         for _ in 0..5 {
             let start = Instant::now();
             for row in &queries {
@@ -97,7 +97,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             times[times.len() * 999 / 1000],
             per(statistics.boxes),
             per(statistics.evaluations),
-            per(statistics.forms),
+            per(statistics.pieces),
             per(statistics.subdivisions),
             per(statistics.refinements),
             preparation

@@ -6,7 +6,7 @@ use perpend_knowledge::Kind;
 use crate::hierarchy::Workspace;
 use crate::query::Query;
 use crate::solver::Tie;
-use crate::statistics::Statistics;
+use crate::statistics::Work;
 
 /// The closed form of a shape.
 #[derive(Debug)]
@@ -30,7 +30,7 @@ impl Analytic {
     }
 
     /// The foot that the shape proposes; none where it declines.
-    pub(crate) fn propose(&self, _: &Query, _: &mut Workspace, _: &mut Statistics) -> Option<Proposal> {
+    pub(crate) fn propose(&self, _: &Query, _: &mut Workspace, _: &mut Work) -> Option<Proposal> {
         match *self {}
     }
 }

@@ -102,7 +102,7 @@ impl Part<'_> {
         let domain = Domain::WHOLE;
         let decrease = 1e-3 * state.margin();
         let search = Search { domain, start: domain.clamp(s, t), known: None, iterations: 8, decrease };
-        let found = newton::search(self.leaf, x, search, &mut state.statistics, |_| false);
+        let found = newton::search(self.leaf, x, search, &mut state.done, |_| false);
         self.offer(&found, state);
     }
 
@@ -178,7 +178,7 @@ pub(super) fn certify(part: Part<'_>, state: &mut State, memory: &mut Memory, sh
                 }
                 splits += 1;
                 state.work -= 1;
-                state.statistics.subdivisions += 1;
+                state.done.subdivisions += 1;
                 split(cell, memory);
             }
         }
@@ -214,7 +214,7 @@ impl Proof<'_> {
         memory.nets.clear();
         memory.cells.clear();
         leaf.tables.form(leaf.shape(), self.x, self.formed, &mut memory.nets);
-        state.statistics.forms += 1;
+        state.done.pieces += 1;
         let (m, n) = leaf.shape().form_degree();
         let rounding = rounding_bound(leaf.degree, self.x.length(), leaf.radius, self.formed, leaf.heaviest);
         memory.cells.push(Cell { offset: 0, m, n, domain: Domain::WHOLE, rounding, slack: 0.0 });
@@ -291,7 +291,7 @@ impl Proof<'_> {
         if given > budget {
             return None;
         }
-        state.statistics.evaluations += 1;
+        state.done.evaluations += 1;
         let jet = leaf.jet(corner.0, corner.1);
         let d = (jet.p.truncate() / jet.p.w).distance(self.x);
         self.part.offer(&Found { distance: d, s: corner.0, t: corner.1, jet }, state);
@@ -322,7 +322,7 @@ impl Proof<'_> {
         };
         let (upper, goal, formed) = (state.best.distance, state.goal, self.formed);
         let mut closed = false;
-        let found = newton::search(leaf, self.x, search, &mut state.statistics, |found| {
+        let found = newton::search(leaf, self.x, search, &mut state.done, |found| {
             let tau = goal.tau(found.distance.min(upper));
             if leaf.rational && tau < formed - 0.5 * goal.gap {
                 return false; // the form will be made again
@@ -367,14 +367,14 @@ impl Proof<'_> {
         );
         let decrease = 1e-2 * state.margin();
         let search = Search { domain: cell.domain, start, known: None, iterations: 8, decrease };
-        let found = newton::search(self.part.leaf, self.x, search, &mut state.statistics, |_| false);
+        let found = newton::search(self.part.leaf, self.x, search, &mut state.done, |_| false);
         self.part.offer(&found, state);
     }
 
     /// Leaves a box open: its bound counts for the answer. `G >= c` gives `D >= tau² + c / w²`.
     fn leave_open(&self, cell: Cell, least: f64, state: &mut State) {
         let leaf = self.part.leaf;
-        state.statistics.unresolved += 1;
+        state.done.unresolved += 1;
         let tau = if leaf.rational { self.formed } else { 0.0 };
         let below = least - cell.rounding - cell.slack;
         let weight = if below < 0.0 { leaf.lightest } else { leaf.heaviest };

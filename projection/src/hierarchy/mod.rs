@@ -29,6 +29,8 @@ mod piece;
 mod state;
 mod ties;
 
+use std::sync::OnceLock;
+
 use glam::DVec3;
 use perpend_kernel::{Aabb, Definition, Direction, cartesian};
 use smallvec::SmallVec;
@@ -46,7 +48,7 @@ use crate::answer::Method;
 use crate::query::{DEFAULT_GAP, Query};
 use crate::scratch::Scratch;
 use crate::solver::{Solution, Solved, Solver, Tie, unit_normal};
-use crate::statistics::Statistics;
+use crate::statistics::Work;
 use crate::tree::{BoxTree, Candidate};
 
 /// The unit roundoff `u`.
@@ -76,6 +78,8 @@ pub(crate) struct Hierarchy {
     frame: Frame,
     leaves: Vec<Leaf>,
     tree: BoxTree,
+    /// Over the leaves' boxes in the parameters; built when a proposal is first proved.
+    parameters: OnceLock<BoxTree>,
     /// The definition's parameters, in u and in v.
     domain: [(f64, f64); 2],
     /// How far rounding may have moved the entity on its way into the leaves: `dg`.
@@ -102,7 +106,7 @@ pub(crate) struct LocalSolution {
     /// From the query to the foot.
     pub offset: DVec3,
     pub tie: Tie,
-    pub statistics: Statistics,
+    pub done: Work,
 }
 
 impl Solver for Hierarchy {
@@ -111,10 +115,11 @@ impl Solver for Hierarchy {
     }
 
     fn solve(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Solved {
+        scratch.statistics.queries += 1;
         match self.project(query, hint, &mut scratch.hierarchy) {
             None => Solved::Beyond,
             Some(solution) => {
-                scratch.statistics += solution.statistics;
+                scratch.statistics.proof += solution.done;
                 Solved::Foot(self.in_model_units(&solution))
             }
         }
@@ -141,7 +146,14 @@ impl Hierarchy {
             leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))
         };
         let domain = [whole(|leaf| leaf.u), whole(|leaf| leaf.v)];
-        Self { frame, tree: BoxTree::new(&boxes), leaves, domain, reserve: Frame::reserve(degree, reach) }
+        Self {
+            frame,
+            tree: BoxTree::new(&boxes),
+            parameters: OnceLock::new(),
+            leaves,
+            domain,
+            reserve: Frame::reserve(degree, reach),
+        }
     }
 
     /// The nearest point of the entity; none where it is proven that nothing is within the query's `max_distance`. `hint` is any point of the entity.
@@ -153,13 +165,58 @@ impl Hierarchy {
     ) -> Option<LocalSolution> {
         let mut state = self.start(query);
         let hint = hint.map_or(f64::INFINITY, |point| self.frame.enter(point).distance(state.point));
-        self.walk(&mut state, hint, workspace);
+        self.finish(query, &mut state, hint, workspace)
+    }
+
+    /// The proof from a first point, and its answer.
+    fn finish(&self, query: &Query, state: &mut State, hint: f64, workspace: &mut Workspace) -> Option<LocalSolution> {
+        self.walk(state, hint, workspace);
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
         let coincidence = self.coincidence(query);
-        let solution = self.solution(&mut state, coincidence);
+        let solution = self.solution(state, coincidence);
         // none is a claim, too: it needs its proof
         let beyond = self.frame.length(solution.distance) > limit && state.tau().min(state.open) >= state.goal.wanted;
         (!beyond).then_some(solution)
+    }
+
+    /// The nearest point of the entity, from a proposal of its parameters: proved, or corrected where another point is nearer by more
+    /// than the gap.
+    pub(crate) fn prove(&self, query: &Query, (u, v): (f64, f64), scratch: &mut Scratch) -> (Solved, bool) {
+        let index = self.leaf_at(u, v);
+        let leaf = &self.leaves[index as usize];
+        let (s, t) = leaf.own_parameters(u, v);
+        let jet = leaf.jet(s, t);
+        let proposed = jet.cartesian().p.distance(self.frame.enter(query.point) - leaf.origin);
+        let found = Found { distance: proposed, s, t, jet };
+        let mut state = self.state(query, index, &found, Work { evaluations: 1, ..Work::default() });
+        let solution = self.finish(query, &mut state, f64::INFINITY, &mut scratch.hierarchy);
+        scratch.statistics.queries += 1;
+        scratch.statistics.proof += state.done;
+        match solution {
+            None => (Solved::Beyond, false),
+            Some(solution) => {
+                let corrected = proposed - solution.distance > self.asked_gap(query);
+                scratch.statistics.corrected += u64::from(corrected);
+                (Solved::Foot(self.in_model_units(&solution)), corrected)
+            }
+        }
+    }
+
+    /// A leaf that holds these parameters.
+    fn leaf_at(&self, u: f64, v: f64) -> u32 {
+        let tree = self.parameters.get_or_init(|| {
+            let corner = |u: f64, v: f64| DVec3::new(u, v, 0.0);
+            let boxes = self
+                .leaves
+                .iter()
+                .map(|leaf| Aabb { min: corner(leaf.u.0, leaf.v.0), max: corner(leaf.u.1, leaf.v.1) });
+            BoxTree::new(&boxes.collect::<Vec<_>>())
+        });
+        let mut found = Vec::new();
+        tree.nearer_than(DVec3::new(u, v, 0.0), f64::MIN_POSITIVE, &mut found);
+        let leaf = |item: u32| &self.leaves[item as usize];
+        let holding = found.iter().map(|c| c.item).filter(|item| holds(leaf(*item).u, u) && holds(leaf(*item).v, v));
+        holding.min().unwrap_or_default()
     }
 
     /// A solution in the model's unit.
@@ -185,9 +242,9 @@ impl Hierarchy {
     /// The state after a first point was found: in the leaf that a descent of the tree arrives at, from its linear guess.
     fn start(&self, query: &Query) -> State {
         let point = self.frame.enter(query.point);
-        let mut statistics = Statistics { queries: 1, ..Statistics::default() };
+        let mut done = Work::default();
         let (index, looked) = self.tree.descend(point).expect("an entity has leaves");
-        statistics.boxes += looked;
+        done.boxes += looked;
         let leaf = &self.leaves[index as usize];
         let asked = self.asked_gap(query);
         let near = leaf.box_distance_squared(point).sqrt();
@@ -200,12 +257,12 @@ impl Hierarchy {
             iterations: 8,
             decrease: 2e-4 * asked * asked.max(near),
         };
-        let found = newton::search(leaf, x, search, &mut statistics, |_| false);
-        self.state(query, index, &found, statistics)
+        let found = newton::search(leaf, x, search, &mut done, |_| false);
+        self.state(query, index, &found, done)
     }
 
     /// The state of a query of which one point of one leaf is known.
-    fn state(&self, query: &Query, index: u32, found: &Found, statistics: Statistics) -> State {
+    fn state(&self, query: &Query, index: u32, found: &Found, done: Work) -> State {
         let point = self.frame.enter(query.point);
         let leaf = &self.leaves[index as usize];
         let best = Part { leaf, index, within: Domain::WHOLE }.foot(found);
@@ -231,7 +288,7 @@ impl Hierarchy {
             met: smallvec::smallvec![best],
             open: f64::INFINITY,
             work: query.options.work,
-            statistics,
+            done,
         }
     }
 
@@ -247,7 +304,7 @@ impl Hierarchy {
         let (mut from, mut to) = (0.0, squared(state.reach().min(hint + 2.0 * state.goal.gap)));
         while state.tau() > 0.0 {
             candidates.clear();
-            state.statistics.boxes += self.tree.nearer_than(state.point, to, candidates);
+            state.done.boxes += self.tree.nearer_than(state.point, to, candidates);
             for candidate in candidates.iter_mut() {
                 let leaf = &self.leaves[candidate.item as usize];
                 candidate.distance_squared = leaf.box_distance_squared(state.point);
@@ -324,7 +381,7 @@ impl Hierarchy {
             normal: unit_normal(c.ps, c.pt),
             offset,
             tie: Tie::None,
-            statistics: state.statistics,
+            done: state.done,
         }
     }
 
@@ -364,7 +421,7 @@ impl Hierarchy {
     fn polish(&self, foot: &Foot, known: Option<Jet>, state: &mut State) -> (Foot, Jet) {
         let leaf = &self.leaves[foot.leaf as usize];
         let x = state.point - leaf.origin;
-        let found = newton::polish(leaf, x, (foot.s, foot.t), known, &mut state.statistics);
+        let found = newton::polish(leaf, x, (foot.s, foot.t), known, &mut state.done);
         (Part { leaf, index: foot.leaf, within: Domain::WHOLE }.foot(&found), found.jet)
     }
 
@@ -385,7 +442,7 @@ impl Hierarchy {
             }
             let (u, v) = leaf.parameters(here.s, here.t);
             neighbours.clear();
-            state.statistics.boxes += self.tree.nearer_than(here.point, squared(1e-9), &mut neighbours);
+            state.done.boxes += self.tree.nearer_than(here.point, squared(1e-9), &mut neighbours);
             for neighbour in &neighbours {
                 let other = &self.leaves[neighbour.item as usize];
                 if neighbour.item != here.leaf && holds(other.u, u) && holds(other.v, v) {
@@ -479,7 +536,7 @@ fn close(part: Part<'_>, state: &mut State, memory: &mut Memory, depth: u32) {
     if certify(part, state, memory, share, last) == Outcome::Closed {
         return;
     }
-    state.statistics.refinements += 1;
+    state.done.refinements += 1;
     state.work = state.work.saturating_sub(1);
     let (direction, halves) = part.leaf.refine();
     let within = part.within.halves(direction);
@@ -601,13 +658,43 @@ mod tests {
                 let jet = leaf.jet(0.3, 0.6);
                 let x = hierarchy.frame.enter(p) - leaf.origin;
                 let found = Found { distance: jet.cartesian().p.distance(x), s: 0.3, t: 0.6, jet };
-                let mut state = hierarchy.state(&query, index, &found, Statistics::default());
+                let mut state = hierarchy.state(&query, index, &found, Work::default());
                 hierarchy.walk(&mut state, f64::INFINITY, &mut workspace);
                 let spoilt = hierarchy.solution(&mut state, 0.0);
                 let gap = hierarchy.asked_gap(&query) + 64.0 * ROUNDING * hierarchy.frame.enter(p).length();
-                assert_eq!(state.statistics.unresolved, 0);
+                assert_eq!(state.done.unresolved, 0);
                 assert!(spoilt.distance - spoilt.lower_bound <= gap, "{spoilt:?}");
                 assert!(spoilt.lower_bound <= good.distance && good.lower_bound <= spoilt.distance);
+            }
+        }
+    }
+
+    #[test]
+    fn any_proposal_is_proved_or_corrected() {
+        let mut random = Random(13);
+        let mut scratch = Scratch::default();
+        for definition in entities(&mut random) {
+            let hierarchy = Hierarchy::new(&definition, &[]);
+            for k in 0..40 {
+                let p =
+                    definition.control_points()[0] + [0.01, 0.4, 4.0][k % 3] * hierarchy.frame.size * random.point();
+                let query = Query::new(p, QueryOptions::default()).expect("finite");
+                let plain = hierarchy.project(&query, None, &mut Workspace::default()).expect("no limit");
+                let [u, v] = hierarchy.domain.map(|(from, to)| random.between(from, to));
+                let gap = hierarchy.asked_gap(&query) + 64.0 * ROUNDING * hierarchy.frame.enter(p).length();
+                let point = match &definition {
+                    Definition::NurbsCurve(curve) => curve.point(u),
+                    Definition::NurbsSurface(surface) => surface.point(u, v),
+                };
+                let is_wrong = point.distance(p) * hierarchy.frame.scale > plain.distance + 2.0 * gap;
+                for (proposal, wrong) in [((plain.u, plain.v), false), ((u, v), is_wrong)] {
+                    let (Solved::Foot(solution), corrected) = hierarchy.prove(&query, proposal, &mut scratch) else {
+                        panic!("no limit");
+                    };
+                    let [upper, lower] = [solution.distance, solution.lower_bound].map(|d| d * hierarchy.frame.scale);
+                    assert!(upper - lower <= gap && lower <= plain.distance && plain.lower_bound <= upper);
+                    assert_eq!(corrected, wrong, "{p} at {u}, {v}");
+                }
             }
         }
     }

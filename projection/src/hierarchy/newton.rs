@@ -5,7 +5,7 @@ use glam::DVec3;
 use super::jet::{CartesianJet, Jet};
 use super::leaf::Leaf;
 use super::{ROUNDING, squared};
-use crate::statistics::Statistics;
+use crate::statistics::Work;
 
 /// A point of a leaf.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +55,7 @@ pub(super) fn search(
     leaf: &Leaf,
     x: DVec3,
     search: Search,
-    statistics: &mut Statistics,
+    done: &mut Work,
     mut visit: impl FnMut(&Found) -> bool,
 ) -> Found {
     let Search { domain, start: (mut s, mut t), mut known, iterations, decrease } = search;
@@ -63,7 +63,7 @@ pub(super) fn search(
     let mut best: Option<(f64, Found)> = None;
     for _ in 0..iterations.max(1) {
         let jet = known.take().unwrap_or_else(|| {
-            statistics.evaluations += 1;
+            done.evaluations += 1;
             leaf.jet(s, t)
         });
         let c = jet.cartesian();
@@ -89,6 +89,7 @@ pub(super) fn search(
             }
         }
         let Some(((ds, dt), promised)) = newton_step(&domain, one, (s, t), &c, r) else { break };
+        done.newton += 1;
         let (next_s, next_t) = domain.clamp(s + ds, t + dt);
         let moved = (next_s - s).abs().max((next_t - t).abs());
         (s, t) = (next_s, next_t);
@@ -104,19 +105,13 @@ pub(super) fn search(
 /// Squared distances that differ by rounding alone cannot tell two points apart: near the surface they leave half the digits of
 /// the parameters open. What tells is the part of `S - x` along the directions in which the point may still move; Newton's
 /// steps are taken while that falls.
-pub(super) fn polish(
-    leaf: &Leaf,
-    x: DVec3,
-    start: (f64, f64),
-    known: Option<Jet>,
-    statistics: &mut Statistics,
-) -> Found {
+pub(super) fn polish(leaf: &Leaf, x: DVec3, start: (f64, f64), known: Option<Jet>, done: &mut Work) -> Found {
     let (domain, one) = (Domain::WHOLE, leaf.degree.1 == 0);
     // a slower direction is one of rounding: a pole has none along its edge
     let slowest = squared(64.0 * ROUNDING * leaf.radius);
     let mut evaluate = |s: f64, t: f64, jet: Option<Jet>| {
         let jet = jet.unwrap_or_else(|| {
-            statistics.evaluations += 1;
+            done.evaluations += 1;
             leaf.jet(s, t)
         });
         let c = jet.cartesian();
@@ -125,6 +120,7 @@ pub(super) fn polish(
         (found, c, r, residual(&domain, one, (s, t), &c, r, slowest))
     };
     let (mut best, mut c, mut r, mut left) = evaluate(start.0, start.1, known);
+    let mut steps = 0;
     for _ in 0..POLISHING {
         let Some(((ds, dt), _)) = newton_step(&domain, one, (best.s, best.t), &c, r) else { break };
         let (s, t) = domain.clamp(best.s + ds, best.t + dt);
@@ -132,12 +128,14 @@ pub(super) fn polish(
             break;
         }
         let next = evaluate(s, t, None);
+        steps += 1;
         let noise = 4.0 * ROUNDING * (best.distance + leaf.radius);
         if next.3 >= left || next.0.distance > best.distance + noise {
             break;
         }
         (best, c, r, left) = next;
     }
+    done.newton += steps;
     best
 }
 

@@ -4,7 +4,7 @@ use glam::DVec3;
 use smallvec::SmallVec;
 
 use super::jet::Jet;
-use crate::statistics::Statistics;
+use crate::statistics::Work;
 
 /// A point of the entity.
 #[derive(Debug, Clone, Copy)]
@@ -55,7 +55,7 @@ pub(super) struct State {
     pub open: f64,
     /// Splits that are left.
     pub work: u32,
-    pub statistics: Statistics,
+    pub done: Work,
 }
 
 impl State {

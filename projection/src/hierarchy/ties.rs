@@ -232,7 +232,7 @@ impl Hierarchy {
 fn converge(leaf: &Leaf, x: DVec3, domain: Domain, start: (f64, f64), state: &mut State) -> Found {
     // a flat minimum is approached by a constant factor only: many iterations, and no early end
     let search = Search { domain, start, known: None, iterations: 100, decrease: 0.0 };
-    newton::search(leaf, x, search, &mut state.statistics, |_| false)
+    newton::search(leaf, x, search, &mut state.done, |_| false)
 }
 
 /// Whether the form is convex on the box, and rises so fast that its points below the threshold take up no more than
