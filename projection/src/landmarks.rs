@@ -48,13 +48,14 @@ impl Landmarks {
         let point = |i: usize, j: usize| surface.control_points()[i * columns + j];
         let weight = |i: usize, j: usize| surface.weights().map_or(1.0, |w| w[i * columns + j]);
         let close = |a: DVec3, b: DVec3| a.distance(b) <= same;
-        let alike = |a: f64, b: f64| (a - b).abs() <= SAME_POINT * a.max(b);
+        // two edges with the same points are one curve where their weights are proportional
+        let alike = |a: (f64, f64), b: (f64, f64)| (a.0 * b.1 - a.1 * b.0).abs() <= SAME_POINT * (a.0 * b.1);
         let pole_u = |i: usize| (1..columns).all(|j| close(point(i, 0), point(i, j)));
         let pole_v = |j: usize| (1..rows).all(|i| close(point(0, j), point(i, j)));
-        let closed_u =
-            (0..columns).all(|j| close(point(0, j), point(rows - 1, j)) && alike(weight(0, j), weight(rows - 1, j)));
-        let closed_v =
-            (0..rows).all(|i| close(point(i, 0), point(i, columns - 1)) && alike(weight(i, 0), weight(i, columns - 1)));
+        let (across, along) =
+            (|j: usize| (weight(0, j), weight(rows - 1, j)), |i: usize| (weight(i, 0), weight(i, columns - 1)));
+        let closed_u = (0..columns).all(|j| close(point(0, j), point(rows - 1, j)) && alike(across(0), across(j)));
+        let closed_v = (0..rows).all(|i| close(point(i, 0), point(i, columns - 1)) && alike(along(0), along(i)));
         Self {
             closed: [closed_u, closed_v],
             poles: [[pole_u(0), pole_u(rows - 1)], [pole_v(0), pole_v(columns - 1)]],

@@ -5,7 +5,9 @@
 
 pub mod adversaries;
 pub mod corpus;
+pub mod disguise;
 pub mod double_double;
+pub mod exact;
 pub mod judgement;
 pub mod kinds;
 pub mod oracle;

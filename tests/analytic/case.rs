@@ -1,0 +1,295 @@
+//! An entity of known shape, asked through the facade; its answers are held to the exact distance.
+
+use std::collections::HashMap;
+
+use glam::DVec3;
+use perpend::{Definition, EntityId, FootPoint, Method, Model, Multiplicity, Parameter, Place, QueryOptions};
+
+use super::probes::Probe;
+use super::shapes::frame_of;
+use crate::common::exact::Exact;
+use crate::common::judgement::{EPSILON, is_certified};
+use crate::common::points;
+use crate::common::random::Random;
+use crate::common::shape::Shape;
+
+/// What a closed form may be off, in ulps of the largest coordinate in play. The exact form is rounded to control points and weights
+/// (some 2 a direction of the frame and 1 a weight), is evaluated with about 2 a degree, and the foot's parameter is rounded once;
+/// measured over all tests here, the worst is about a third of this.
+pub(crate) const ULPS: f64 = 16.0;
+
+/// How many queries were asked, and how many of them the closed form answered.
+#[derive(Debug, Default)]
+pub(crate) struct Tally {
+    pub(crate) queries: usize,
+    pub(crate) analytic: usize,
+    pub(crate) failures: Vec<String>,
+    /// The largest error met, in ulps, with where.
+    pub(crate) worst: (f64, String),
+    by_class: HashMap<&'static str, (usize, usize)>,
+}
+
+impl Tally {
+    /// Fails where an answer was wrong.
+    pub(crate) fn settle(self) {
+        eprintln!("{} of {} analytic, worst {:?}, {:?}", self.analytic, self.queries, self.worst, self.by_class);
+        let shown = self.failures.iter().take(6).cloned().collect::<Vec<_>>().join("\n");
+        assert!(self.failures.is_empty(), "{} of {} answers fail:\n{shown}", self.failures.len(), self.queries);
+    }
+}
+
+/// An entity alone in its model.
+pub(crate) struct Case<'a> {
+    pub(crate) exact: &'a Exact,
+    pub(crate) what: String,
+    pub(crate) model: Model,
+    pub(crate) id: EntityId,
+    definition: Definition,
+    pub(crate) shape: Shape,
+    /// How far the definition is from the exact shape beyond rounding, by samples of 30 digits: what editing left.
+    deviation: f64,
+}
+
+impl<'a> Case<'a> {
+    /// An entity that `model` holds alone.
+    pub(crate) fn new(exact: &'a Exact, what: String, model: Model) -> Self {
+        let entity = &model.entities()[0];
+        let (id, definition) = (entity.id(), Definition::clone(entity.definition()));
+        let shape = Shape::of(&definition);
+        let count = if shape.curve { 60 } else { 7 };
+        let across = if shape.curve { 0 } else { count };
+        let at = |k: usize, along: usize| {
+            let [first, last] = shape.domain(along);
+            first + (last - first) * k as f64 / count as f64
+        };
+        let samples = (0..=count).flat_map(|i| (0..=across).map(move |j| (i, j)));
+        let deviation = samples.map(|(i, j)| exact.distance(shape.point(at(i, 0), at(j, 1)))).fold(0.0, f64::max);
+        Self { exact, what, model, id, definition, shape, deviation }
+    }
+
+    /// An ulp of the largest coordinate in play.
+    fn ulp(&self, p: DVec3) -> f64 {
+        EPSILON * (self.shape.reach().max(self.exact.reach()) + p.abs().max_element())
+    }
+
+    /// Asks all points, alone and in a batch and with hints, and judges every answer.
+    pub(crate) fn ask(&self, probes: &[Probe], tally: &mut Tally) {
+        let options = QueryOptions::default();
+        let points: Vec<DVec3> = probes.iter().map(|probe| probe.point).collect();
+        let batch = self.model.project_all(self.id, &points, &options);
+        let mut projector = self.model.projector(self.id).expect("the entity is there");
+        for (probe, answer) in probes.iter().zip(batch) {
+            let p = probe.point;
+            let foot = answer.expect("a finite point").expect("no distance is too far");
+            let alone = self.model.project(self.id, p).expect("a finite point");
+            let hinted = projector.project(p, &options).expect("a finite point").expect("no distance is too far");
+            let exactly = self.exact.distance(p);
+            let mut faults = self.faults(probe, &foot, exactly);
+            if !same_bits(&foot, &alone) || !same_bits(&foot, &hinted) {
+                faults.push(format!("alone {alone:?}, with a hint {hinted:?}"));
+            }
+            let error = (foot.distance - exactly).abs() / self.ulp(p);
+            if error > tally.worst.0 {
+                tally.worst = (error, format!("{} at {p}", self.what));
+            }
+            tally.queries += 1;
+            let by_class = tally.by_class.entry(self.exact.class()).or_default();
+            by_class.0 += 1;
+            if foot.method == Method::Analytic {
+                tally.analytic += 1;
+                by_class.1 += 1;
+            }
+            if !faults.is_empty() {
+                let faults = faults.join("; ");
+                tally.failures.push(format!("{} at {p:?}: {faults}; {foot:?} of {:?}", self.what, self.exact));
+            }
+        }
+    }
+
+    /// What is wrong with an answer.
+    fn faults(&self, probe: &Probe, foot: &FootPoint, exactly: f64) -> Vec<String> {
+        let p = probe.point;
+        let size = self.shape.size();
+        let (ulp, gap) = (self.ulp(p), 1e-9 * size);
+        let few = ULPS * ulp + 2.0 * self.deviation;
+        // the certified solver polishes as far as its gap
+        let allowed = few + if foot.method == Method::Hierarchy { gap } else { 0.0 };
+        let mut faults = Vec::new();
+        let off = foot.distance - exactly;
+        if off.is_nan() || off.abs() > allowed {
+            faults.push(format!("the distance is {exactly:e}, off by {off:e}, {allowed:e} allowed"));
+        }
+        let bounded = foot.lower_bound >= 0.0 && foot.lower_bound <= foot.distance;
+        if !bounded || foot.lower_bound > exactly + few {
+            faults.push(format!("the bound is false by {:e}: the distance is {exactly:e}", foot.lower_bound - exactly));
+        }
+        // from a million sizes away the certified solver's bound is rounded by more
+        let near = (p - 0.5 * (self.shape.bounds()[0] + self.shape.bounds()[1])).length() <= 1e4 * size;
+        if (foot.method == Method::Analytic || near)
+            && !is_certified(foot.distance, foot.lower_bound, gap, self.shape.reach(), p)
+        {
+            faults.push("it is not certified".to_owned());
+        }
+        let at = [foot.parameter.u(), foot.parameter.v().unwrap_or(0.0)];
+        let inside = |along: usize| (self.shape.domain(along)[0]..=self.shape.domain(along)[1]).contains(&at[along]);
+        if !inside(0) || !(self.shape.curve || inside(1)) {
+            faults.push("the parameter is outside the domain".to_owned());
+            return faults;
+        }
+        if foot.point != self.evaluated(foot.parameter) {
+            faults.push("the point is not the definition at the parameter, bit for bit".to_owned());
+        }
+        let there = self.shape.distance_at(p, at[0].into(), at[1].into());
+        if (foot.distance - there).abs() > ULPS * ulp || foot.lower_bound > there + ulp {
+            faults.push(format!("the point there is at {there:e}"));
+        }
+        let places = self.places(at, self.noise(foot.point));
+        if !places.contains(&foot.place) {
+            faults.push(format!("the place is one of {places:?}"));
+        }
+        // what the certified solver did not meet is no fault of it
+        let told = foot.method == Method::Analytic;
+        if told && probe.multiplicity.is_some_and(|wanted| wanted != foot.multiplicity) {
+            faults.push(format!("the multiplicity is {:?}", probe.multiplicity.expect("known")));
+        }
+        if foot.multiplicity != Multiplicity::Unique && !self.is_rivalled(p, foot) {
+            faults.push("no other point is as near".to_owned());
+        }
+        faults.extend(self.wrong_sign(p, foot, at));
+        faults
+    }
+
+    fn evaluated(&self, parameter: Parameter) -> DVec3 {
+        match (&self.definition, parameter) {
+            (Definition::NurbsCurve(curve), Parameter::Curve(u)) => curve.point(u),
+            (Definition::NurbsSurface(surface), Parameter::Surface(u, v)) => surface.point(u, v),
+            _ => panic!("a curve's parameter for a surface, or the reverse"),
+        }
+    }
+
+    /// By what angle rounding may turn a tangent about the axis, and with it the normal: beside a pole the tangent is no longer than the
+    /// rounding of its ends.
+    fn noise(&self, point: DVec3) -> f64 {
+        let (centre, axis) = match (frame_of(self.exact), self.exact) {
+            (Some(frame), _) => (frame.centre, frame.axis),
+            (_, Exact::Revolution { origin, axis, .. }) => (*origin, *axis),
+            _ => return 0.0,
+        };
+        64.0 * self.ulp(DVec3::ZERO) / (point - centre).cross(axis).length()
+    }
+
+    /// Whether a free-form profile may have a kink there: at a full inner knot.
+    fn is_kink(&self, at: [f64; 2]) -> bool {
+        let free = matches!(self.exact, Exact::Extrusion { .. } | Exact::Revolution { .. });
+        let full = |k: usize| {
+            let [first, last] = self.shape.domain(k);
+            let beside = |t: &&f64| (**t - at[k]).abs() <= 1e-6 * (last - first) && **t > first && **t < last;
+            self.shape.knots[k].iter().filter(beside).count() >= self.shape.degree[k]
+        };
+        free && (full(0) || full(1))
+    }
+
+    /// What the place at these parameters may be called.
+    fn places(&self, at: [f64; 2], noise: f64) -> Vec<Place> {
+        let shape = &self.shape;
+        let same = 64.0 * EPSILON * shape.reach();
+        let last = [shape.rows - 1, shape.columns - 1];
+        let control = |along: usize, i: usize, j: usize| {
+            if along == 0 { shape.points[i * shape.columns + j] } else { shape.points[j * shape.columns + i] }
+        };
+        // of an edge: whether it is reached, is one point, is met by its opposite
+        let edges = [0, 1].map(|along| {
+            let [first, end] = shape.domain(along);
+            let side = if at[along] == first { Some(0) } else { (at[along] == end).then_some(last[along]) };
+            if shape.curve && along == 1 {
+                return (false, false, false);
+            }
+            let others = 0..=last[1 - along];
+            let closed = others.clone().all(|j| control(along, 0, j).distance(control(along, last[along], j)) <= same);
+            let Some(side) = side else { return (false, false, closed) };
+            let pole = !shape.curve
+                && others.clone().all(|j| control(along, side, j).distance(control(along, side, 0)) <= same);
+            (true, pole, closed)
+        });
+        let horn = matches!(self.exact, Exact::Torus { major, minor, .. } if major == minor);
+        let mut places = Vec::new();
+        if edges.iter().any(|(_, pole, _)| *pole) {
+            return vec![Place::Pole];
+        }
+        if horn {
+            places.push(Place::Cusp);
+        }
+        // one-sided tangents that are rounding seem to turn
+        if noise > 1e-7 || self.is_kink(at) {
+            places.push(Place::Crease);
+        }
+        let open = |(on, _, closed): (bool, bool, bool)| on && !closed;
+        let seam = |(on, _, closed): (bool, bool, bool)| on && closed;
+        places.push(if open(edges[0]) && open(edges[1]) {
+            Place::Corner
+        } else if seam(edges[0]) || seam(edges[1]) {
+            Place::Seam
+        } else if open(edges[0]) || open(edges[1]) {
+            if shape.curve { Place::End } else { Place::Edge }
+        } else {
+            Place::Interior
+        });
+        places
+    }
+
+    /// Whether some point well away from the foot is as near, as far as samples tell.
+    fn is_rivalled(&self, p: DVec3, foot: &FootPoint) -> bool {
+        let size = self.shape.size();
+        let count = if self.shape.curve { 2000 } else { 60 };
+        // even steps, and steps that even out parameters which crowd at an end
+        let shares: Vec<f64> = [1.0, 1e-3, 1e3]
+            .iter()
+            .flat_map(|k| (0..=count).map(move |i| f64::from(i) / (f64::from(i) + k * f64::from(count - i))))
+            .collect();
+        let across = if self.shape.curve { &shares[..1] } else { &shares[..] };
+        let at = |share: f64, along: usize| {
+            let [first, last] = self.shape.domain(along);
+            (1.0 - share) * first + share * last
+        };
+        // between two samples a point may be nearer by as much as their distance
+        let step = 4.0 * size / f64::from(count);
+        shares.iter().flat_map(|s| across.iter().map(move |t| (*s, *t))).any(|(s, t)| {
+            let q = match &self.definition {
+                Definition::NurbsCurve(curve) => curve.point(at(s, 0)),
+                Definition::NurbsSurface(surface) => surface.point(at(s, 0), at(t, 1)),
+            };
+            q.distance(foot.point) > 1e-6 * size && q.distance(p) <= foot.distance.hypot(step)
+        })
+    }
+
+    fn wrong_sign(&self, p: DVec3, foot: &FootPoint, at: [f64; 2]) -> Option<String> {
+        let (Some(normal), Some(signed)) = (foot.normal, foot.signed_distance) else {
+            let (none, singular) =
+                (foot.normal.is_none() && foot.signed_distance.is_none(), [Place::Pole, Place::Cusp]);
+            let noisy = self.noise(foot.point) > 1e-3;
+            let right = none && (self.shape.curve || singular.contains(&foot.place) || noisy);
+            return (!right).then(|| "normal and signed distance are both there or both not".to_owned());
+        };
+        let place = points::place(&self.shape, at, &mut Random::new(0));
+        // the reference is taken a little inside the domain, and beside a pole it is another one
+        let clear = self.noise(foot.point) < 1e-3 && !self.is_kink(at);
+        if clear && normal.dot(place.normal) < 1.0 - 1e-5 && place.normal != DVec3::ZERO {
+            return Some(format!("the normal is {}", place.normal));
+        }
+        let side = (p - foot.point).dot(normal);
+        let clear = side.abs() > 64.0 * self.ulp(p);
+        (signed.abs() != foot.distance || (clear && (signed > 0.0) != (side > 0.0)))
+            .then(|| format!("the query lies {side:e} along the normal"))
+    }
+}
+
+fn same_bits(a: &FootPoint, b: &FootPoint) -> bool {
+    let bits = |foot: &FootPoint| {
+        let (normal, signed) = (foot.normal.unwrap_or_default(), foot.signed_distance.unwrap_or_default());
+        let at = [foot.parameter.u(), foot.parameter.v().unwrap_or_default()];
+        let numbers = [at[0], at[1], foot.distance, foot.lower_bound, signed];
+        let numbers = numbers.into_iter().chain(foot.point.to_array()).chain(normal.to_array());
+        numbers.map(f64::to_bits).collect::<Vec<_>>()
+    };
+    bits(a) == bits(b) && (a.place, a.multiplicity, a.method) == (b.place, b.multiplicity, b.method)
+}
