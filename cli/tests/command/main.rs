@@ -3,6 +3,7 @@
 mod bad_models;
 mod bad_points;
 mod check_and_show;
+mod explain;
 mod output;
 mod project;
 mod workshop;
