@@ -74,7 +74,7 @@ impl Prepared {
             }
         }
         if let Some(proposer) = self.proposer(asked)
-            && let Some(proposal) = proposer.propose(query, &mut scratch.statistics.proposal)
+            && let Some(proposal) = proposer.propose(query, scratch)
         {
             let (solved, corrected) = self.hierarchy().prove(query, proposal, scratch);
             let method = if corrected { Method::Hierarchy } else { proposer.method() };

@@ -5,7 +5,6 @@ use glam::DVec3;
 use crate::answer::Method;
 use crate::query::Query;
 use crate::scratch::Scratch;
-use crate::statistics::Work;
 
 /// A solver: immutable, made once from a definition, shared by threads.
 ///
@@ -24,7 +23,9 @@ pub(crate) trait Proposer: std::fmt::Debug + Send + Sync {
     fn method(&self) -> Method;
 
     /// Parameters of the definition at which it takes the foot to be (`v` is 0 for a curve); none where it finds nothing.
-    fn propose(&self, query: &Query, work: &mut Work) -> Option<(f64, f64)>;
+    ///
+    /// Its work is counted in `scratch.statistics.proposal`; what else it keeps in `scratch` spares work and changes no proposal.
+    fn propose(&self, query: &Query, scratch: &mut Scratch) -> Option<(f64, f64)>;
 }
 
 /// What became of a query.
