@@ -6,6 +6,8 @@
 
 mod common;
 
+#[path = "failures/beside_poles.rs"]
+mod beside_poles;
 #[path = "failures/boundaries.rs"]
 mod boundaries;
 #[path = "failures/case.rs"]

@@ -7,6 +7,9 @@ use crate::answer::{FootPoint, Method, Multiplicity, Parameter, Place};
 use crate::landmarks::{Landmarks, turns, vanishes};
 use crate::solver::{Solution, Tie};
 
+/// A normal that rounding may turn by this much, in radians, says nothing: the derivatives vanish but for rounding.
+const LOST: f64 = 0.5;
+
 /// Reads answers off the parameters of one definition.
 #[derive(Debug, Clone, Copy)]
 pub(crate) struct Reader<'a> {
@@ -14,6 +17,8 @@ pub(crate) struct Reader<'a> {
     pub landmarks: &'a Landmarks,
     /// The definition's size.
     pub size: f64,
+    /// Its largest |coordinate|.
+    pub reach: f64,
 }
 
 impl Reader<'_> {
@@ -101,7 +106,7 @@ impl Reader<'_> {
         match (at_end, closed) {
             (true, false) => Place::End,
             _ if cusp => Place::Cusp,
-            _ if turns(before[1], after[1]) => Place::Crease,
+            _ if turns(before[1], after[1], 0.0) => Place::Crease,
             (true, true) => Place::Seam,
             (false, _) => Place::Interior,
         }
@@ -143,7 +148,7 @@ impl Reader<'_> {
     /// The mean of the unit normals on all sides of a seam or break, and whether they differ.
     fn normals_around(self, surface: &NurbsSurface, at: [f64; 2], around: [bool; 2]) -> (Option<DVec3>, bool) {
         let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
-        let mut normals: smallvec::SmallVec<[DVec3; 4]> = smallvec::SmallVec::new();
+        let mut normals: smallvec::SmallVec<[(DVec3, f64); 4]> = smallvec::SmallVec::new();
         for below in [[false, false], [true, false], [false, true], [true, true]] {
             if (0..2).any(|d| below[d] && !around[d]) {
                 continue;
@@ -159,10 +164,23 @@ impl Reader<'_> {
             });
             let mut d = [DVec3::ZERO; 4];
             surface.derivatives_from(side[0], side[1], below, 1, &mut d);
-            normals.extend(d[2].cross(d[1]).try_normalize());
+            let rounding = [Direction::U, Direction::V].map(|along| self.rounding(surface, along, side));
+            // the angle by which rounding of the derivatives may turn the normal: large beside a pole
+            let noise = rounding[0] / d[2].length() + rounding[1] / d[1].length();
+            if noise < LOST {
+                normals.extend(d[2].cross(d[1]).try_normalize().map(|normal| (normal, noise)));
+            }
         }
-        let crease = normals.windows(2).any(|pair| turns(pair[0], pair[1]));
-        let sum: DVec3 = normals.iter().sum();
+        let crease = normals.windows(2).any(|pair| turns(pair[0].0, pair[1].0, pair[0].1 + pair[1].1));
+        let sum: DVec3 = normals.iter().map(|(normal, _)| *normal).sum();
         (sum.try_normalize(), crease)
+    }
+
+    /// How far rounding may move the first derivative along a direction: that of a point, over the span, times the degree.
+    fn rounding(self, surface: &NurbsSurface, along: Direction, at: [f64; 2]) -> f64 {
+        let knots = surface.knots(along);
+        let span = knots.find_span(at[along as usize]);
+        let width = knots.as_slice()[span + 1] - knots.as_slice()[span];
+        64.0 * f64::EPSILON * self.reach * knots.degree() as f64 / width
     }
 }

@@ -74,10 +74,10 @@ fn full_breaks(knots: &KnotVector) -> Vec<f64> {
     knots.breaks().filter(|b| b.multiplicity >= knots.degree()).map(|b| b.at).collect()
 }
 
-/// Whether the direction turns between two one-sided tangents.
-pub(crate) fn turns(before: DVec3, after: DVec3) -> bool {
+/// Whether the direction turns between two one-sided tangents, by more than `noise` in radians that rounding may have turned them.
+pub(crate) fn turns(before: DVec3, after: DVec3, noise: f64) -> bool {
     let lengths = before.length() * after.length();
-    before.cross(after).length() > TURN * lengths || before.dot(after) < 0.0
+    before.cross(after).length() > (TURN + noise) * lengths || before.dot(after) < 0.0
 }
 
 /// Whether a curve's first derivative `d` vanishes.

@@ -22,6 +22,7 @@ use crate::solver::{Proposer, Solved, Solver};
 pub struct Prepared {
     definition: Arc<Definition>,
     size: f64,
+    reach: f64,
     landmarks: Landmarks,
     plan: Plan,
     closed_form: Option<ClosedForm>,
@@ -38,7 +39,8 @@ impl Prepared {
     pub fn new(definition: Arc<Definition>, record: Option<&Record>) -> Self {
         let landmarks = Landmarks::of(&definition);
         let Dispatched { plan, closed_form } = dispatch(&definition, record, &landmarks);
-        Self { size: definition.size(), definition, landmarks, plan, closed_form, hierarchy: OnceLock::new() }
+        let (size, reach) = (definition.size(), definition.reach());
+        Self { size, reach, definition, landmarks, plan, closed_form, hierarchy: OnceLock::new() }
     }
 
     /// The definition.
@@ -115,6 +117,6 @@ impl Prepared {
     }
 
     fn reader(&self) -> Reader<'_> {
-        Reader { definition: &self.definition, landmarks: &self.landmarks, size: self.size }
+        Reader { definition: &self.definition, landmarks: &self.landmarks, size: self.size, reach: self.reach }
     }
 }
