@@ -159,7 +159,7 @@ impl Model {
         Ok(entity)
     }
 
-    fn position(&self, id: EntityId) -> Result<usize, EditError> {
+    pub(crate) fn position(&self, id: EntityId) -> Result<usize, EditError> {
         self.index.get(&id).copied().ok_or(EditError::UnknownEntity { id })
     }
 

@@ -26,6 +26,8 @@ Exit codes: 0 done; 1 an input is wrong (standard error says what, where and how
 pub(crate) enum Command {
     /// Validate a model file and say what it holds
     Check(CheckArguments),
+    /// Acquire what can be known of the entities and write the model with it
+    Learn(LearnArguments),
     /// Show the entities of a model and what is known of them
     Show(ShowArguments),
     /// Explain how an entity's queries are answered, and why so
@@ -43,13 +45,23 @@ pub(crate) struct CheckArguments {
 
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
+pub(crate) struct LearnArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    /// The file for the model with what was learned, written whole or not at all; it may be MODEL
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
 pub(crate) struct ShowArguments {
     /// The model file (RON)
     pub(crate) model: PathBuf,
     /// Show this entity alone, in full
     #[arg(long, value_name = "ID", value_parser = entity_id)]
     pub(crate) entity: Option<EntityId>,
-    /// Write JSON, for programs
+    /// Write JSON, for programs; what is not known yet is acquired first, in memory
     #[arg(long)]
     pub(crate) json: bool,
 }

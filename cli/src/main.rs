@@ -4,6 +4,7 @@ mod args;
 mod check;
 mod error;
 mod explain;
+mod learn;
 mod names;
 mod project;
 mod report;
@@ -20,6 +21,7 @@ fn main() -> ExitCode {
     survive_file_size_limit();
     let done = match arguments.command {
         Command::Check(arguments) => check::run(&arguments),
+        Command::Learn(arguments) => learn::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
         Command::Project(arguments) => project::run(&arguments),

@@ -12,7 +12,18 @@ use crate::error::CommandError;
 use crate::report::{self, rounded};
 
 pub(crate) fn run(arguments: &ShowArguments) -> Result<ExitCode, CommandError> {
-    let model = Model::read(&arguments.model)?;
+    let mut model = Model::read(&arguments.model)?;
+    if arguments.json {
+        match arguments.entity {
+            None => {
+                model.learn_all();
+            }
+            Some(id) if model.entity(id).is_some() => {
+                model.learn(id).expect("the model has the entity");
+            }
+            Some(_) => {} // told below
+        }
+    }
     let entities: Vec<&Entity> = match arguments.entity {
         None => model.entities().iter().collect(),
         Some(id) => {

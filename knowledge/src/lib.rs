@@ -5,6 +5,7 @@
 //! was computed from, so that knowledge of an older definition shows as stale. The types are plain data with a stable form
 //! in serde; numbers of a record are finite, which [`Record::validate`] checks.
 
+mod acquire;
 mod bare;
 mod category;
 mod classification;
@@ -17,6 +18,7 @@ mod record;
 mod relationship;
 mod representation;
 
+pub use acquire::{AcquireOptions, acquire, two_level_estimate};
 pub use category::{Categories, Category, InvalidCategories};
 pub use classification::{Classification, Kind, Origin};
 pub use definitions::Definitions;
@@ -26,4 +28,4 @@ pub use item::{Basis, Item};
 pub use recognise::{Refuted, default_tolerance, prove, recognise};
 pub use record::Record;
 pub use relationship::{Checked, Relation, Relationship, Value};
-pub use representation::{Break, Cleaning, Irregularity, ParameterPoint, Representation, Speed};
+pub use representation::{Break, Cleaning, Irregularity, ParameterPoint, Representation, SpanSpeed, Speed};

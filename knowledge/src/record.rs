@@ -55,6 +55,7 @@ impl Record {
             list(part.breaks.as_deref(), "breaks", definition, &mut stale);
             list(part.irregularities.as_deref(), "irregularities", definition, &mut stale);
             one(part.closed.as_ref(), "closed", definition, &mut stale);
+            one(part.periodic.as_ref(), "periodic", definition, &mut stale);
             one(part.bounds.as_ref(), "box", definition, &mut stale);
             one(part.length.as_ref(), "length", definition, &mut stale);
             one(part.area.as_ref(), "area", definition, &mut stale);
@@ -95,6 +96,7 @@ impl Record {
             forget(&mut part.breaks, definition);
             forget(&mut part.irregularities, definition);
             part.closed.take_if(|item| item.is_stale(definition));
+            part.periodic.take_if(|item| item.is_stale(definition));
             part.bounds.take_if(|item| item.is_stale(definition));
             part.length.take_if(|item| item.is_stale(definition));
             part.area.take_if(|item| item.is_stale(definition));

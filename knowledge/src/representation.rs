@@ -6,6 +6,7 @@ use perpend_kernel::{Aabb, Direction};
 use serde::{Deserialize, Serialize};
 
 use crate::bare;
+use crate::category::Category;
 use crate::item::Item;
 
 /// How an entity's parametrisation behaves. An absent part is not known; an empty list says "none found".
@@ -24,6 +25,9 @@ pub struct Representation {
     /// Whether the entity closes on itself, in u and in v.
     #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
     pub closed: Option<Item<(bool, bool)>>,
+    /// Whether, in u and in v, it closes on itself and goes on over the seam without a jump of its first derivative.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub periodic: Option<Item<(bool, bool)>>,
     /// A box that holds the entity.
     #[serde(default, rename = "box", with = "bare", skip_serializing_if = "Option::is_none")]
     pub bounds: Option<Item<Aabb>>,
@@ -41,17 +45,46 @@ pub struct Representation {
     pub cleaning: Option<Vec<Item<Cleaning>>>,
 }
 
-/// How fast the point moves with one parameter.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// How fast the point moves with one parameter, over the whole entity and span by span.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Speed {
     /// The parameter.
     pub direction: Direction,
-    /// The least length of the first derivative.
+    /// The least length of the first derivative. Where it was proved, none is below it, and the item's gap says how near to it
+    /// one comes.
     pub min: f64,
-    /// The greatest length of the first derivative.
+    /// The greatest length of the first derivative; proved as `min` is.
     pub max: f64,
     /// The parametrisation factor `(max - min) / max`; 1 where `max` is 0 (Piegl et al. 2008, §5).
+    pub factor: f64,
+    /// Where the least one is.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub min_at: Option<ParameterPoint>,
+    /// Where the greatest one is.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub max_at: Option<ParameterPoint>,
+    /// The category of the factor, with the settings that it chooses.
+    #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+    pub category: Option<Category>,
+    /// The same for every span of the parameter, ascending.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub spans: Vec<SpanSpeed>,
+}
+
+/// How fast the point moves over one span of a parameter, over the whole of the other one where there is one.
+#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
+pub struct SpanSpeed {
+    /// Where the span starts.
+    pub from: f64,
+    /// Where it ends.
+    pub to: f64,
+    /// As in [`Speed`].
+    pub min: f64,
+    /// As in [`Speed`].
+    pub max: f64,
+    /// As in [`Speed`].
     pub factor: f64,
 }
 
@@ -63,10 +96,19 @@ pub struct Break {
     pub direction: Direction,
     /// Its value.
     pub at: f64,
-    /// The order of parametric continuity.
+    /// The order of parametric continuity: derivatives up to it are equal within `c_within`.
     pub c: u32,
-    /// The order of geometric continuity.
+    /// The order of geometric continuity, at most 2 where `c` is less: tangents (tangent planes) and curvatures up to it are
+    /// equal within `g_within`.
     pub g: u32,
+    /// The largest jump that the orders up to `c` may have: the terms of the Taylor series over the longer one of both spans, as
+    /// a share of the size of both. 0 where the knots alone promise the order.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub c_within: f64,
+    /// The largest angle by which the tangent (the tangent plane) turns, in radians, and for order 2 the angle that the jump of
+    /// the curvature makes over the size of both spans; 0 where `c` says as much.
+    #[serde(default, skip_serializing_if = "is_zero")]
+    pub g_within: f64,
 }
 
 /// A place in the parameters of an entity.
@@ -85,7 +127,7 @@ pub enum ParameterPoint {
 #[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Irregularity {
-    /// The curve turns back; a surface loses its normal.
+    /// The curve stops and goes on in another direction; the normal of a surface vanishes, and is another one beside.
     Cusp {
         /// Where.
         at: ParameterPoint,
@@ -108,6 +150,9 @@ pub enum Irregularity {
         /// The largest distance between corresponding points; left out where it is 0.
         #[serde(default, skip_serializing_if = "is_zero")]
         gap: f64,
+        /// The orders of parametric and geometric continuity over the seam, as in [`Break`]; absent: not known.
+        #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
+        order: Option<(u32, u32)>,
     },
     /// The first derivative in a parameter vanishes.
     VanishingDerivative {
@@ -117,6 +162,13 @@ pub enum Irregularity {
         at: ParameterPoint,
         /// The length of the derivative there.
         speed: f64,
+    },
+    /// The normal of a surface vanishes: the derivatives in u and in v are parallel there, or one of them vanishes.
+    VanishingNormal {
+        /// Where.
+        at: ParameterPoint,
+        /// The length of the cross product of the derivatives there.
+        area: f64,
     },
     /// The tangent (the tangent plane) turns abruptly.
     Crease {
@@ -140,6 +192,19 @@ pub enum Irregularity {
     Inflection {
         /// Where.
         at: ParameterPoint,
+        /// The curvature beside it, on the side where that is greater, in the inverse of the model's unit.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        curvature: f64,
+    },
+    /// The curvature of a curve is zero and keeps its sign: a straight stretch, or a point, where `from` is `to`.
+    ZeroCurvature {
+        /// Where it starts.
+        from: f64,
+        /// Where it ends.
+        to: f64,
+        /// The greatest curvature that was met there, in the inverse of the model's unit.
+        #[serde(default, skip_serializing_if = "is_zero")]
+        curvature: f64,
     },
     /// Two knots nearly coincide.
     NearKnots {
@@ -161,8 +226,8 @@ pub enum Irregularity {
     },
 }
 
-fn is_zero(gap: &f64) -> bool {
-    gap.to_bits() == 0
+fn is_zero(x: &f64) -> bool {
+    x.to_bits() == 0
 }
 
 /// What was done to the defining data on their way in.

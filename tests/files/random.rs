@@ -2,9 +2,9 @@
 
 use std::collections::BTreeMap;
 
-use perpend::knowledge::{Break, Checked, Irregularity, ParameterPoint, Speed, Value};
+use perpend::knowledge::{Break, Checked, Irregularity, ParameterPoint, SpanSpeed, Speed, Value};
 use perpend::{
-    Aabb, Basis, Classification, Cleaning, CurveData, DVec3, Definition, DefinitionData, Direction, EntityId,
+    Aabb, Basis, Category, Classification, Cleaning, CurveData, DVec3, Definition, DefinitionData, Direction, EntityId,
     Fingerprint, Intent, Item, Kind, Model, Operation, Origin, Record, Relation, Relationship, Representation,
     SurfaceData, Units,
 };
@@ -175,15 +175,18 @@ fn irregularity() -> impl Strategy<Value = Irregularity> {
         1 => ParameterPoint::Surface(u, v),
         _ => ParameterPoint::Iso(direction, v),
     });
-    (place, direction(), number(), number(), number(), 0..9_u8).prop_map(|(place, direction, at, much, to, which)| {
+    (place, direction(), number(), number(), number(), 0..12_u8).prop_map(|(place, direction, at, much, to, which)| {
         match which {
             0 => Irregularity::Cusp { at: place, angle: much },
             1 => Irregularity::Pole { direction, at, extent: much },
-            2 => Irregularity::Seam { direction, gap: much },
+            2 => Irregularity::Seam { direction, gap: much, order: None },
+            9 => Irregularity::Seam { direction, gap: much, order: Some((2, 3)) },
+            10 => Irregularity::VanishingNormal { at: place, area: much },
+            11 => Irregularity::ZeroCurvature { from: at, to, curvature: much },
             3 => Irregularity::VanishingDerivative { direction, at: place, speed: much },
             4 => Irregularity::Crease { direction, at, angle: much },
             5 => Irregularity::Loop { from: at, to, gap: much },
-            6 => Irregularity::Inflection { at: place },
+            6 => Irregularity::Inflection { at: place, curvature: much },
             7 => Irregularity::NearKnots { direction, at, apart: much },
             _ => Irregularity::TinySpan { direction, at, extent: much },
         }
@@ -191,28 +194,67 @@ fn irregularity() -> impl Strategy<Value = Irregularity> {
 }
 
 fn representation() -> impl Strategy<Value = Representation> {
-    let speed = (direction(), number(), number(), number()).prop_map(|(direction, min, max, factor)| Speed {
-        direction,
+    let at = || {
+        option::of(prop_oneof![
+            number().prop_map(ParameterPoint::Curve),
+            range().prop_map(|(u, v)| ParameterPoint::Surface(u, v)),
+        ])
+    };
+    let category = (range(), text(), number()).prop_map(|((upper, tolerance), name, jitter)| Category {
+        upper,
+        name,
+        tolerance,
+        jitter,
+    });
+    let span = (range(), range(), number()).prop_map(|((from, to), (min, max), factor)| SpanSpeed {
+        from,
+        to,
         min,
         max,
         factor,
     });
-    let break_ = (direction(), number(), any::<u32>(), any::<u32>()).prop_map(|(direction, at, c, g)| Break {
-        direction,
-        at,
-        c,
-        g,
-    });
+    let speed = ((direction(), range(), number()), (at(), at()), option::of(category), vec(span, 0..3)).prop_map(
+        |((direction, (min, max), factor), (min_at, max_at), category, spans)| Speed {
+            direction,
+            min,
+            max,
+            factor,
+            min_at,
+            max_at,
+            category,
+            spans,
+        },
+    );
+    let break_ = (direction(), number(), any::<u32>(), any::<u32>(), range())
+        .prop_map(|(direction, at, c, g, (c_within, g_within))| Break { direction, at, c, g, c_within, g_within });
     let bounds = (vector(), vector()).prop_map(|(min, max)| Aabb { min, max });
     let cleaning = direction().prop_map(|direction| Cleaning::Clamped { direction });
     (
         (items(speed), items(break_), items(irregularity()), items(cleaning)),
-        (option::of(item(any::<(bool, bool)>())), option::of(item(bounds)), option::of(item(range()))),
+        (
+            option::of(item(any::<(bool, bool)>())),
+            option::of(item(any::<(bool, bool)>())),
+            option::of(item(bounds)),
+            option::of(item(range())),
+        ),
         (option::of(item(number())), option::of(item(number()))),
     )
-        .prop_map(|((speed, breaks, irregularities, cleaning), (closed, bounds, weights), (length, area))| {
-            Representation { speed, breaks, irregularities, closed, bounds, length, area, weights, cleaning }
-        })
+        .prop_map(
+            |((speed, breaks, irregularities, cleaning), (closed, periodic, bounds, weights), (length, area))| {
+                Representation {
+                    speed,
+                    breaks,
+                    irregularities,
+                    closed,
+                    periodic,
+                    bounds,
+                    length,
+                    area,
+                    weights,
+                    cleaning,
+                }
+            },
+        )
 }
 
 fn operation() -> impl Strategy<Value = Operation> {

@@ -100,7 +100,8 @@ fn show_gives_json_to_programs() {
     let run = workshop.run(&["show", "model.ron", "--json"]);
     run.ends(0, "");
     let shown: Value = serde_json::from_str(&run.out).unwrap();
-    let model = perpend::Model::read(workshop.path("model.ron")).unwrap();
+    let mut model = perpend::Model::read(workshop.path("model.ron")).unwrap();
+    assert_eq!(model.learn_all(), 2);
     let record = |at: usize| serde_json::to_value(model.entities()[at].record()).unwrap();
     let expected = json!({"entities": [
         {
@@ -120,9 +121,19 @@ fn show_gives_json_to_programs() {
 }
 
 #[test]
-fn knowledge_that_is_not_there_is_null() {
-    let run = Workshop::new().run(&["show", "model.ron", "--json"]);
+fn show_acquires_what_is_not_known_in_memory() {
+    let workshop = Workshop::new();
+    let before = workshop.read("model.ron");
+    let run = workshop.run(&["show", "model.ron", "--json"]);
+    run.ends(0, "");
+    assert_eq!(workshop.read("model.ron"), before);
     let shown: Value = serde_json::from_str(&run.out).unwrap();
     assert_eq!(shown["entities"].as_array().unwrap().len(), 3);
-    assert_eq!(shown["entities"][0]["knowledge"], Value::Null);
+    let part = |at: usize| &shown["entities"][at]["knowledge"]["representation"];
+    assert!((part(0)["length"]["value"].as_f64().unwrap() - 4.0).abs() < 1e-12);
+    assert!((part(1)["area"]["value"].as_f64().unwrap() - 16.0).abs() < 1e-12);
+    assert_eq!(part(0)["speed"][0]["value"]["category"]["name"], json!("nearly uniform"));
+    assert_eq!(part(2)["closed"]["value"], json!([true, false]));
+    let run = workshop.run(&["show", "model.ron", "--json", "--entity", "99"]);
+    run.ends(1, "error: model.ron: no entity has the id 99; its ids are 1, 2, 7");
 }

@@ -1,0 +1,22 @@
+//! `perpend learn`: acquires what can be known of the entities.
+
+use std::process::ExitCode;
+
+use perpend::Model;
+
+use crate::args::LearnArguments;
+use crate::error::CommandError;
+use crate::report;
+
+pub(crate) fn run(arguments: &LearnArguments) -> Result<ExitCode, CommandError> {
+    let mut model = Model::read(&arguments.model)?;
+    let learned = model.learn_all();
+    model.write(&arguments.output)?;
+    report::say(format_args!(
+        "{}: learned of {} of {}",
+        arguments.output.display(),
+        learned,
+        if model.len() == 1 { "1 entity".to_owned() } else { format!("{} entities", model.len()) },
+    ));
+    Ok(ExitCode::SUCCESS)
+}
