@@ -18,7 +18,7 @@ pub(crate) struct Frame {
 }
 
 impl Frame {
-    pub(super) fn of(definition: &Definition) -> Self {
+    pub(crate) fn of(definition: &Definition) -> Self {
         let bounds = definition.control_box();
         let size = bounds.diagonal();
         Self { origin: bounds.centre(), scale: power_of_two_below(size).recip(), size }

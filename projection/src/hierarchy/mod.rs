@@ -17,7 +17,7 @@
 mod certify;
 mod convex;
 #[cfg(test)]
-mod double_double;
+pub(crate) mod double_double;
 mod form;
 mod frame;
 mod jet;
@@ -37,7 +37,7 @@ use smallvec::SmallVec;
 
 use self::certify::{Memory, Outcome, Part, certify};
 use self::form::{rounding_bound, rounding_factor};
-use self::frame::Frame;
+pub(crate) use self::frame::Frame;
 use self::jet::Jet;
 use self::leaf::Leaf;
 use self::newton::{Domain, Found, Search};
