@@ -3,12 +3,12 @@
 use std::sync::{Arc, OnceLock};
 
 use perpend_kernel::{Definition, DefinitionData, EntityId, InvalidDefinition};
-use perpend_knowledge::{NonFinite, Record, Refuted};
+use perpend_knowledge::{Contradiction, NonFinite, Record, Refuted};
 use perpend_projection::Prepared;
 use serde::{Deserialize, Serialize};
 
 use crate::enter::IntoDefinition;
-use crate::trust::{FIELD, Trust};
+use crate::trust::{FIELD, False, Trust};
 use crate::written::{Writing, Written};
 
 /// An entity: its identity, its definition, what is known of it, and what queries need of it.
@@ -50,6 +50,18 @@ pub enum EntityError {
     /// Its record states a class that it is proved not to have.
     #[error("knowledge: {FIELD}: {0}")]
     FalseClass(#[from] Refuted),
+    /// Its record states something else that its definition contradicts.
+    #[error("knowledge: {0}")]
+    FalseItem(#[from] Contradiction),
+}
+
+impl From<False> for EntityError {
+    fn from(found: False) -> Self {
+        match found {
+            False::Class(refuted) => refuted.into(),
+            False::Item(contradiction) => contradiction.into(),
+        }
+    }
 }
 
 impl Entity {

@@ -1,5 +1,7 @@
 //! Acquiring knowledge.
 
+use std::sync::OnceLock;
+
 use perpend_kernel::EntityId;
 use perpend_knowledge::{AcquireOptions, Record};
 
@@ -46,7 +48,10 @@ impl Model {
     fn keep(&mut self, at: usize, record: Option<Record>) -> bool {
         let is_new = record.is_some();
         if is_new {
+            // a plan is made from what is known
             self.entities[at].record = record;
+            self.entities[at].prepared = OnceLock::new();
+            self.overview = OnceLock::new();
         }
         is_new
     }

@@ -54,8 +54,8 @@ pub use perpend_kernel::{
     Sphere, SurfaceData, Torus,
 };
 pub use perpend_knowledge::{
-    self as knowledge, AcquireOptions, Basis, Categories, Category, Classification, Cleaning, Definitions, Intent,
-    Item, Kind, Operation, Origin, Record, Refuted, Relation, Relationship, Representation,
+    self as knowledge, AcquireOptions, Basis, Categories, Category, Classification, Cleaning, Contradiction,
+    Definitions, Intent, Item, Kind, Operation, Origin, Record, Refuted, Relation, Relationship, Representation,
 };
 pub use perpend_projection::{
     self as projection, Continuum, Decomposition, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place,

@@ -1,10 +1,10 @@
 //! The command line.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, value_parser};
-use perpend::{EntityId, Method};
+use perpend::{EntityId, Method, Model, ReadError, Trust};
 
 use crate::names;
 
@@ -36,11 +36,28 @@ pub(crate) enum Command {
     Project(ProjectArguments),
 }
 
+/// What happens to knowledge of the model that is false.
+#[derive(Debug, Args)]
+pub(crate) struct TrustArguments {
+    /// Acquire knowledge that is false or stale again, instead of refusing a model that states something false
+    #[arg(long)]
+    repair: bool,
+}
+
+impl TrustArguments {
+    /// Reads the model.
+    pub(crate) fn read(&self, model: &Path) -> Result<Model, ReadError> {
+        Model::read_with(model, if self.repair { Trust::Repair } else { Trust::Refuse })
+    }
+}
+
 #[derive(Debug, Args)]
 #[command(after_help = EXIT_CODES)]
 pub(crate) struct CheckArguments {
     /// The model file (RON)
     pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
 }
 
 #[derive(Debug, Args)]
@@ -48,6 +65,8 @@ pub(crate) struct CheckArguments {
 pub(crate) struct LearnArguments {
     /// The model file (RON)
     pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
     /// The file for the model with what was learned, written whole or not at all; it may be MODEL
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
@@ -58,6 +77,8 @@ pub(crate) struct LearnArguments {
 pub(crate) struct ShowArguments {
     /// The model file (RON)
     pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
     /// Show this entity alone, in full
     #[arg(long, value_name = "ID", value_parser = entity_id)]
     pub(crate) entity: Option<EntityId>,
@@ -71,6 +92,8 @@ pub(crate) struct ShowArguments {
 pub(crate) struct ExplainArguments {
     /// The model file (RON)
     pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
     /// The entity
     #[arg(long, value_name = "ID", value_parser = entity_id)]
     pub(crate) entity: EntityId,
@@ -88,6 +111,8 @@ pub(crate) struct ExplainArguments {
 pub(crate) struct ProjectArguments {
     /// The model file (RON)
     pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
     /// The points (CSV); `-` is standard input
     pub(crate) points: PathBuf,
     /// Project all points onto this entity

@@ -10,7 +10,7 @@ use crate::error::CommandError;
 use crate::report::{self, counted, rounded};
 
 pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> {
-    let model = Model::read(&arguments.model)?;
+    let model = arguments.trust.read(&arguments.model)?;
     let stale = model.entities().iter().filter(|entity| !entity.stale().is_empty()).count();
     let surfaces = model.entities().iter().filter(|e| matches!(**e.definition(), Definition::NurbsSurface(_))).count();
     let mut text = String::new();

@@ -12,7 +12,7 @@ use crate::names;
 use crate::report::{self, rounded};
 
 pub(crate) fn run(arguments: &ExplainArguments) -> Result<ExitCode, CommandError> {
-    let model = Model::read(&arguments.model)?;
+    let model = arguments.trust.read(&arguments.model)?;
     let id = arguments.entity;
     let Some(entity) = model.entity(id) else {
         return Err(CommandError::unknown_entity(arguments.model.clone(), &model, id));

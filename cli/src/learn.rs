@@ -9,7 +9,7 @@ use crate::error::CommandError;
 use crate::report;
 
 pub(crate) fn run(arguments: &LearnArguments) -> Result<ExitCode, CommandError> {
-    let mut model = Model::read(&arguments.model)?;
+    let mut model = arguments.trust.read(&arguments.model)?;
     let learned = model.learn_all();
     model.write(&arguments.output)?;
     report::say(format_args!(

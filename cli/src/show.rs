@@ -12,7 +12,7 @@ use crate::error::CommandError;
 use crate::report::{self, rounded};
 
 pub(crate) fn run(arguments: &ShowArguments) -> Result<ExitCode, CommandError> {
-    let mut model = Model::read(&arguments.model)?;
+    let mut model = arguments.trust.read(&arguments.model)?;
     if arguments.json {
         match arguments.entity {
             None => {

@@ -58,6 +58,7 @@ pub(super) fn read(text: &str, trust: Trust) -> Result<Model, ModelError> {
                 EntityError::Definition(error) => error.into(),
                 EntityError::Knowledge(error) => error.into(),
                 EntityError::FalseClass(error) => error.into(),
+                EntityError::FalseItem(error) => error.into(),
             })
         })?);
     }

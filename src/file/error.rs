@@ -5,7 +5,7 @@ use std::io;
 use std::path::PathBuf;
 
 use perpend_kernel::{EntityId, InvalidDefinition};
-use perpend_knowledge::{NonFinite, Refuted};
+use perpend_knowledge::{Contradiction, NonFinite, Refuted};
 
 use crate::trust::FIELD;
 
@@ -135,4 +135,7 @@ pub enum InvalidModel {
     /// A record states a class that its definition is proved not to have.
     #[error("knowledge: {FIELD}: {0}")]
     FalseClass(#[from] Refuted),
+    /// A record states something else that its definition contradicts.
+    #[error("knowledge: {0}")]
+    FalseItem(#[from] Contradiction),
 }

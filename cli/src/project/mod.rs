@@ -43,7 +43,7 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let threads = rayon::ThreadPoolBuilder::new().num_threads(arguments.threads.map_or(0, usize::from)).build()?;
     let output = Output::open(file)?;
     let start = Instant::now();
-    let model = Model::read(&arguments.model)?;
+    let model = arguments.trust.read(&arguments.model)?;
     let reading = start.elapsed();
     if let Some(id) = arguments.entity
         && model.entity(id).is_none()

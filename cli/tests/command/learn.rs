@@ -52,3 +52,27 @@ fn a_model_that_cannot_be_read_or_written_is_told() {
     run.ends(1, "no/where.ron");
     assert_eq!(workshop.files(), ["model.ron"]);
 }
+
+#[test]
+fn a_file_that_states_something_false_is_refused_or_repaired() {
+    let workshop = Workshop::new();
+    workshop.run(&["learn", "model.ron", "-o", "true.ron"]).ends(0, "learned of 3 of 3");
+    let learned = workshop.read("true.ron");
+    let at = learned.find("length: (").expect("the arc length of a curve");
+    let value = at + learned[at..].find("value: ").expect("its value") + "value: ".len();
+    workshop.write("false.ron", format!("{}1{}", &learned[..value], &learned[value..]));
+    workshop.write("points.csv", "x,y,z\n1,2,3\n");
+    for command in [
+        &["check", "false.ron"][..],
+        &["show", "false.ron"],
+        &["explain", "false.ron", "--entity", "1"],
+        &["project", "false.ron", "points.csv"],
+        &["learn", "false.ron", "-o", "mended.ron"],
+    ] {
+        let run = workshop.run(command);
+        run.ends(1, "entity 1: knowledge: representation.length is false: it lies between");
+        assert!(run.err.contains("--repair"), "{}", run.err);
+        workshop.run(&[command, &["--repair"]].concat()).ends(0, "");
+    }
+    assert_eq!(workshop.read("mended.ron"), learned);
+}

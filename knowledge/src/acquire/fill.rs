@@ -1,5 +1,7 @@
 //! Filling a record.
 
+use std::collections::HashSet;
+
 use perpend_kernel::{Definition, Fingerprint};
 
 use super::{AcquireOptions, acquire};
@@ -15,6 +17,30 @@ impl Record {
     pub fn learn(&mut self, definition: &Definition, options: &AcquireOptions) -> bool {
         let class = self.learn_class(definition);
         self.learn_representation(definition, options) || class
+    }
+
+    /// Acquires what is stale or contradicted of the representation again ([`Record::contradictions`]). Of a list all is acquired
+    /// again but what was declared and holds. Says whether anything changed.
+    pub fn repair(&mut self, definition: &Definition, options: &AcquireOptions) -> bool {
+        let stale = self.stale(definition.fingerprint());
+        // what was done on entry cannot be acquired, and the class has a proof of its own
+        let stale = stale.into_iter().filter(|field| !field.starts_with("representation.cleaning"));
+        let wrong: HashSet<String> = stale
+            .chain(self.contradictions(definition).into_iter().map(|wrong| wrong.field))
+            .filter_map(|field| field.strip_prefix("representation.").map(str::to_owned))
+            .collect();
+        let Some(part) = self.representation.as_mut().filter(|_| !wrong.is_empty()) else { return false };
+        let new = acquire(definition, options);
+        mend_list(&mut part.speed, new.speed, "speed", &wrong);
+        mend_list(&mut part.breaks, new.breaks, "breaks", &wrong);
+        mend_list(&mut part.irregularities, new.irregularities, "irregularities", &wrong);
+        mend(&mut part.closed, new.closed, "closed", &wrong);
+        mend(&mut part.periodic, new.periodic, "periodic", &wrong);
+        mend(&mut part.bounds, new.bounds, "box", &wrong);
+        mend(&mut part.length, new.length, "length", &wrong);
+        mend(&mut part.area, new.area, "area", &wrong);
+        mend(&mut part.weights, new.weights, "weights", &wrong);
+        true
     }
 
     fn learn_class(&mut self, definition: &Definition) -> bool {
@@ -56,6 +82,22 @@ impl Record {
             ..old
         });
         true
+    }
+}
+
+fn mend<T>(old: &mut Option<Item<T>>, new: Option<Item<T>>, name: &str, wrong: &HashSet<String>) {
+    if wrong.contains(name) {
+        *old = new;
+    }
+}
+
+fn mend_list<T>(old: &mut Option<Vec<Item<T>>>, new: Option<Vec<Item<T>>>, name: &str, wrong: &HashSet<String>) {
+    let is_wrong = |k: usize| wrong.contains(&format!("{name}[{k}]"));
+    let count = old.as_ref().map_or(0, Vec::len);
+    if (0..count).any(is_wrong) {
+        let kept = old.take().into_iter().flatten().enumerate();
+        let kept = kept.filter(|(k, item)| !is_wrong(*k) && item.basis == Basis::Declared).map(|(_, item)| item);
+        *old = Some(kept.chain(new.into_iter().flatten()).collect());
     }
 }
 

@@ -1,7 +1,7 @@
 //! Arc length and area.
 
 use glam::DVec3;
-use perpend_kernel::{Direction, NurbsCurve, NurbsSurface};
+use perpend_kernel::{Definition, Direction, NurbsCurve, NurbsSurface};
 
 use super::bernstein::Side;
 use super::source::{Piece, Source};
@@ -14,19 +14,13 @@ const POINTS: usize = 200_000;
 
 /// The arc length, and a proven bound of its error.
 ///
-/// Gauss-Legendre quadrature of the speed over parts of the Bézier pieces. Each part is no shorter than its chord and no longer
-/// than its control polygon (weights are positive), which proves the bound; the value is usually far better.
+/// Gauss-Legendre quadrature of the speed over parts of the Bézier pieces; the [`enclosure`] by the same parts proves the bound,
+/// and the value is usually far better.
 pub(super) fn length(curve: &NurbsCurve, source: &Source) -> (f64, f64) {
     let rule = gauss(8);
-    let mut parts: Vec<Piece> = source.pieces().collect();
-    while 2 * parts.len() <= PARTS {
-        parts = parts.into_iter().map(|part| part.halves(Side::First)).flat_map(|(a, b)| [a, b]).collect();
-    }
-    let (mut least, mut greatest, mut value) = (0.0, 0.0, 0.0);
+    let parts = parts(source, PARTS);
+    let mut value = 0.0;
     for part in &parts {
-        let points: Vec<DVec3> = part.points().collect();
-        least += points[0].distance(points[points.len() - 1]);
-        greatest += points.windows(2).map(|side| side[0].distance(side[1])).sum::<f64>();
         let (from, to) = (part.from.0, part.to.0);
         for (x, weight) in &rule {
             let mut d = [DVec3::ZERO; 2];
@@ -34,10 +28,36 @@ pub(super) fn length(curve: &NurbsCurve, source: &Source) -> (f64, f64) {
             value += weight * (to - from) * d[1].length();
         }
     }
-    let rounding = 16.0 * (curve.degree() + 4) as f64 * f64::EPSILON * source.reach * parts.len() as f64;
-    let (least, greatest) = ((least - rounding).max(0.0), greatest + rounding);
+    let (least, greatest) = between(source, &parts);
     let value = value.clamp(least, greatest);
     (value, (value - least).max(greatest - value))
+}
+
+/// Bounds of the arc length of a curve by about `count` parts: each is no shorter than its chord and no longer than its control
+/// polygon (weights are positive).
+pub(crate) fn enclosure(definition: &Definition, count: usize) -> (f64, f64) {
+    let source = Source::of(definition);
+    between(&source, &parts(&source, count))
+}
+
+fn parts(source: &Source, count: usize) -> Vec<Piece> {
+    let mut parts: Vec<Piece> = source.pieces().collect();
+    while 2 * parts.len() <= count {
+        parts = parts.into_iter().map(|part| part.halves(Side::First)).flat_map(|(a, b)| [a, b]).collect();
+    }
+    parts
+}
+
+fn between(source: &Source, parts: &[Piece]) -> (f64, f64) {
+    let (mut least, mut greatest) = (0.0, 0.0);
+    for part in parts {
+        let points: Vec<DVec3> = part.points().collect();
+        least += points[0].distance(points[points.len() - 1]);
+        greatest += points.windows(2).map(|side| side[0].distance(side[1])).sum::<f64>();
+    }
+    let p = source.degree().0;
+    let rounding = 16.0 * (p + 4) as f64 * f64::EPSILON * source.reach * parts.len() as f64;
+    ((least - rounding).max(0.0), greatest + rounding)
 }
 
 /// The area, and the difference that finer cells make to it.
@@ -92,7 +112,7 @@ fn gauss(n: usize) -> Vec<(f64, f64)> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use perpend_kernel::{Circle, Definition, Frame, Sphere};
+    use perpend_kernel::{Circle, Frame, Sphere};
     use std::f64::consts::{PI, TAU};
 
     #[test]

@@ -27,6 +27,7 @@ mod zeros;
 
 use perpend_kernel::{Definition, Direction, Fingerprint};
 
+pub(crate) use measure::enclosure;
 pub use options::AcquireOptions;
 
 use crate::category::Categories;
