@@ -12,8 +12,10 @@ use crate::names;
 use crate::report::{self, rounded};
 
 pub(crate) fn run(arguments: &ExplainArguments) -> Result<ExitCode, CommandError> {
-    let model = arguments.trust.read(&arguments.model)?;
+    let mut model = arguments.trust.read(&arguments.model)?;
     let id = arguments.entity;
+    // what is absent is acquired in memory: the file stays as it is
+    let _ = model.learn(id);
     let Some(entity) = model.entity(id) else {
         return Err(CommandError::unknown_entity(arguments.model.clone(), &model, id));
     };

@@ -1,10 +1,10 @@
 //! The settings: from the representation part of the record.
 
 use perpend_kernel::{Definition, Fingerprint};
-use perpend_knowledge::{Irregularity, Item, ParameterPoint, Record, Representation};
+use perpend_knowledge::{Categories, Category, Irregularity, Item, ParameterPoint, Record, Representation, Speed};
 
 use crate::landmarks::Landmarks;
-use crate::plan::{Reason, Settings};
+use crate::plan::{Decomposition, Reason, Settings};
 
 /// The settings of a definition's solvers, with their reasons.
 pub(super) fn settings(
@@ -28,7 +28,7 @@ pub(super) fn settings(
     let cuts = cuts(definition, part, landmarks, of, reasons);
     breaks(part, of, reasons);
     closed(part, of, reasons);
-    Settings { gap, cuts, decomposition: Vec::new() }
+    Settings { gap, cuts, decomposition: decomposition(part, of, reasons) }
 }
 
 /// The items of a list that belong to this definition, with the name of each.
@@ -76,11 +76,46 @@ fn cuts(
     cuts
 }
 
+/// The decomposition of each direction whose factor is known: by the category that the record names, else by the default table.
+fn decomposition(part: &Representation, of: Fingerprint, reasons: &mut Vec<Reason>) -> Vec<Decomposition> {
+    let table = Categories::default();
+    let mut all = Vec::new();
+    for (item, speed) in fresh(part.speed.as_ref(), "speed", of) {
+        let Speed { direction, factor, category, .. } = &speed.value;
+        let Category { name, tolerance, jitter, .. } = category.as_ref().unwrap_or_else(|| table.of(*factor));
+        let effect = format!(
+            "the parametrisation factor in {direction} is {factor:.4}, {name}: a decomposition into points has the tolerance {tolerance} and \
+             the jitter {jitter}"
+        );
+        reasons.push(Reason { item, basis: Some(speed.basis), effect });
+        all.push(Decomposition {
+            direction: *direction,
+            category: name.clone(),
+            tolerance: *tolerance,
+            jitter: *jitter,
+        });
+    }
+    all
+}
+
+/// Creases one by one; the smooth breaks together.
 fn breaks(part: &Representation, of: Fingerprint, reasons: &mut Vec<Reason>) {
+    let (mut smooth, mut basis) = (0, None);
     for (item, b) in fresh(part.breaks.as_ref(), "breaks", of) {
-        let smooth = if b.value.g == 0 { "a foot there lies on a crease" } else { "the tangent is continuous there" };
-        let effect = format!("the pieces meet at {} = {}; {smooth}", b.value.direction, b.value.at);
-        reasons.push(Reason { item, basis: Some(b.basis), effect });
+        if b.value.g == 0 {
+            let effect =
+                format!("the pieces meet at {} = {}: a foot there lies on a crease", b.value.direction, b.value.at);
+            reasons.push(Reason { item, basis: Some(b.basis), effect });
+        } else {
+            smooth += 1;
+            basis = basis.or(Some(b.basis));
+        }
+    }
+    if smooth > 0 {
+        let places = if smooth == 1 { "1 break".to_owned() } else { format!("{smooth} breaks") };
+        let effect =
+            format!("the pieces meet at {places} where the tangent is continuous: no foot there lies on a crease");
+        reasons.push(Reason { item: "representation.breaks".to_owned(), basis, effect });
     }
 }
 
