@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-use perpend::{Cleaning, Definition, Direction, Entity, Model};
+use perpend::{Cleaning, Definition, Direction, Entity};
 
 use crate::args::CheckArguments;
 use crate::error::CommandError;

@@ -2,8 +2,6 @@
 
 use std::process::ExitCode;
 
-use perpend::Model;
-
 use crate::args::LearnArguments;
 use crate::error::CommandError;
 use crate::report;

@@ -15,7 +15,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
-use perpend::{Model, QueryOptions};
+use perpend::QueryOptions;
 
 use crate::args::ProjectArguments;
 use crate::error::CommandError;
