@@ -58,8 +58,9 @@ pub use perpend_knowledge::{
     Definitions, Intent, Item, Kind, Operation, Origin, Record, Refuted, Relation, Relationship, Representation,
 };
 pub use perpend_projection::{
-    self as projection, Continuum, Decomposition, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place,
-    Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch, Settings, Statistics, Ties, Work,
+    self as projection, Continuum, Decomposition, FootPoint, Method, Multiplicity, NewtonTolerances, Parameter,
+    ParameterBox, Place, Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch, Settings, Statistics, Ties,
+    Wave, WaveSettings, WaveTrace, Work,
 };
 
 /// The program of the README, run as a test.

@@ -3,12 +3,13 @@
 use perpend::{Method, Multiplicity, Place};
 
 /// All methods that can be asked for.
-pub(crate) const METHODS: [Method; 2] = [Method::Analytic, Method::Hierarchy];
+pub(crate) const METHODS: [Method; 3] = [Method::Analytic, Method::Hierarchy, Method::Wave];
 
 pub(crate) fn method(method: Method) -> &'static str {
     match method {
         Method::Analytic => "analytic",
         Method::Hierarchy => "hierarchy",
+        Method::Wave => "wave",
     }
 }
 

@@ -70,6 +70,8 @@ pub enum Method {
     Analytic,
     /// The prepared tree of Bézier pieces and its certificate.
     Hierarchy,
+    /// A cubical wave through uniform cells, then Newton's method (Piegl et al. 2008).
+    Wave,
 }
 
 /// The nearest point of an entity to a query point, with its proof.

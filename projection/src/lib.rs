@@ -14,11 +14,13 @@ mod scratch;
 mod solver;
 mod statistics;
 mod tree;
+mod wave;
 
 pub use answer::{Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Ties};
 pub use plan::{Decomposition, Plan, Reason, Settings};
 pub use prepared::Prepared;
-pub use query::{Query, QueryError, QueryOptions};
+pub use query::{NewtonTolerances, Query, QueryError, QueryOptions};
 pub use scratch::Scratch;
 pub use statistics::{Statistics, Work};
 pub use tree::{BoxTree, Candidate};
+pub use wave::{DecompositionCost, Steps, Wave, WaveSettings, WaveTrace};

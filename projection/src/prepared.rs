@@ -16,6 +16,7 @@ use crate::plan::Plan;
 use crate::query::Query;
 use crate::scratch::Scratch;
 use crate::solver::{Proposer, Solved, Solver};
+use crate::wave::{Wave, WaveSettings};
 
 /// An entity made ready for queries: built once, immutable, shared by threads.
 #[derive(Debug)]
@@ -28,6 +29,7 @@ pub struct Prepared {
     closed_form: Option<ClosedForm>,
     /// Built when the first query needs it: where a closed form answers, none may.
     hierarchy: OnceLock<Hierarchy>,
+    wave: OnceLock<Wave>,
 }
 
 impl Prepared {
@@ -39,8 +41,32 @@ impl Prepared {
     pub fn new(definition: Arc<Definition>, record: Option<&Record>) -> Self {
         let landmarks = Landmarks::of(&definition);
         let Dispatched { plan, closed_form } = dispatch(&definition, record, &landmarks);
-        let (size, reach) = (definition.size(), definition.reach());
-        Self { size, reach, definition, landmarks, plan, closed_form, hierarchy: OnceLock::new() }
+        Self {
+            size: definition.size(),
+            reach: definition.reach(),
+            definition,
+            landmarks,
+            plan,
+            closed_form,
+            hierarchy: OnceLock::new(),
+            wave: OnceLock::new(),
+        }
+    }
+
+    /// The same with cells and samples as these settings ask, in place of those that the plan's settings give.
+    #[must_use]
+    pub fn with_wave(self, settings: WaveSettings) -> Self {
+        let wave = Wave::with(Arc::clone(&self.definition), settings, &self.landmarks, &self.plan.settings.cuts);
+        Self { wave: wave.into(), ..self }
+    }
+
+    /// The cells and samples of [`Method::Wave`], made when first asked for.
+    #[must_use]
+    pub fn wave(&self) -> &Wave {
+        self.wave.get_or_init(|| {
+            let settings = WaveSettings::of(&self.definition, &self.plan.settings);
+            Wave::with(Arc::clone(&self.definition), settings, &self.landmarks, &self.plan.settings.cuts)
+        })
     }
 
     /// The definition.
@@ -109,6 +135,7 @@ impl Prepared {
     fn proposer(&self, method: Method) -> Option<&dyn Proposer> {
         match method {
             Method::Analytic | Method::Hierarchy => None,
+            Method::Wave => Some(self.wave()),
         }
     }
 

@@ -22,13 +22,38 @@ pub struct QueryOptions {
     /// The solver that is asked first; none: the entity's plan's. A solver that the entity does not have is passed over: the answer says which
     /// one answered.
     pub method: Option<Method>,
+    /// Where Newton's method stops in a solver that only proposes. It weakens no proof.
+    pub newton: NewtonTolerances,
     /// How often a query may split a form before it answers with the gap that it reached.
     pub work: u32,
 }
 
+/// Where Newton's method stops in a solver that only proposes (Piegl et al. 2008, §3). What it leaves, the proof polishes or corrects.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct NewtonTolerances {
+    /// Points nearer than this are one: the query lies on the entity, or a step leads nowhere. In the model's unit; none: 1e-6 times the
+    /// size.
+    pub coincidence: Option<f64>,
+    /// The way to the query is perpendicular to a tangent where the cosine between them is at most this.
+    pub perpendicularity: f64,
+}
+
+impl Default for NewtonTolerances {
+    fn default() -> Self {
+        Self { coincidence: None, perpendicularity: 1e-4 }
+    }
+}
+
 impl Default for QueryOptions {
     fn default() -> Self {
-        Self { gap: None, max_distance: None, coincidence: None, method: None, work: 20_000 }
+        Self {
+            gap: None,
+            max_distance: None,
+            coincidence: None,
+            method: None,
+            newton: NewtonTolerances::default(),
+            work: 20_000,
+        }
     }
 }
 
@@ -39,7 +64,13 @@ impl QueryOptions {
     ///
     /// [`QueryError::InvalidOption`] where a length is negative or not a number.
     pub fn validate(&self) -> Result<(), QueryError> {
-        let lengths = [("gap", self.gap), ("max_distance", self.max_distance), ("coincidence", self.coincidence)];
+        let lengths = [
+            ("gap", self.gap),
+            ("max_distance", self.max_distance),
+            ("coincidence", self.coincidence),
+            ("newton.coincidence", self.newton.coincidence),
+            ("newton.perpendicularity", Some(self.newton.perpendicularity)),
+        ];
         for (option, value) in lengths {
             if let Some(value) = value
                 && (value.is_nan() || value < 0.0)
@@ -102,7 +133,9 @@ pub enum QueryError {
         z: f64,
     },
     /// An option has no meaning.
-    #[error("the option {option} is {value}; it is a length of at least 0 in the model's unit")]
+    #[error(
+        "the option {option} is {value}; it is a length in the model's unit, or a cosine: give it a number of at least 0"
+    )]
     InvalidOption {
         /// The option's name.
         option: &'static str,
