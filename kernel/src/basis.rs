@@ -7,15 +7,16 @@ pub(crate) const ROOM: usize = MAX_DEGREE + 1;
 
 /// The `degree + 1` basis functions that do not vanish on span `span`, at `u`.
 ///
-/// The NURBS Book, algorithm A2.2 (equation 2.5 without the terms that are known to vanish).
-pub(crate) fn functions(knots: &KnotVector, span: usize, u: f64) -> [f64; ROOM] {
+/// The NURBS Book, algorithm A2.2 (equation 2.5 without the terms that are known to vanish). `R` is the room, more than the degree, as
+/// for [`derivatives`].
+pub(crate) fn functions<const R: usize>(knots: &KnotVector, span: usize, u: f64) -> [f64; R] {
     let (p, t) = (knots.degree(), knots.as_slice());
-    let mut values = [0.0; ROOM];
+    let mut values = [0.0; R];
     if let Some(only) = interpolated(knots, span, u) {
         values[only] = 1.0;
         return values;
     }
-    let (mut left, mut right) = ([0.0; ROOM], [0.0; ROOM]);
+    let (mut left, mut right) = ([0.0; R], [0.0; R]);
     values[0] = 1.0;
     for j in 1..=p {
         left[j] = u - t[span + 1 - j];
@@ -118,9 +119,9 @@ mod tests {
         let span = knots.find_span(u);
         let mut table = [[0.0; ROOM]; ROOM];
         derivatives(&knots, span, u, 3, &mut table);
-        let (before, after) = (functions(&knots, span, u - h), functions(&knots, span, u + h));
+        let (before, after) = (functions::<ROOM>(&knots, span, u - h), functions::<ROOM>(&knots, span, u + h));
         for j in 0..=3 {
-            assert!((table[0][j] - functions(&knots, span, u)[j]).abs() < 1e-15);
+            assert!((table[0][j] - functions::<ROOM>(&knots, span, u)[j]).abs() < 1e-15);
             assert!((table[1][j] - (after[j] - before[j]) / (2.0 * h)).abs() < 1e-8);
         }
         for row in &table[1..=3] {

@@ -150,9 +150,17 @@ impl NurbsCurve {
     /// Within a few `degree * ε` times the largest coordinate (basis functions are non-negative and add up to 1).
     #[must_use]
     pub fn point(&self, u: f64) -> DVec3 {
+        match self.degree() {
+            0..=3 => self.point_with_room::<4>(u),
+            4..=7 => self.point_with_room::<8>(u),
+            _ => self.point_with_room::<ROOM>(u),
+        }
+    }
+
+    fn point_with_room<const R: usize>(&self, u: f64) -> DVec3 {
         let u = self.knots.clamp(u);
         let (p, span) = (self.degree(), self.knots.find_span(u));
-        let values = basis::functions(&self.knots, span, u);
+        let values = basis::functions::<R>(&self.knots, span, u);
         let points = &self.control_points[span - p..=span];
         match &self.weights {
             None => points.iter().zip(&values).fold(DVec3::ZERO, |sum, (point, b)| sum + *b * *point),

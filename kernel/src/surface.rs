@@ -189,11 +189,19 @@ impl NurbsSurface {
     /// Within a few `(p + q) * ε` times the largest coordinate.
     #[must_use]
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
+        match self.u.degree().max(self.v.degree()) {
+            0..=3 => self.point_with_room::<4>(u, v),
+            4..=7 => self.point_with_room::<8>(u, v),
+            _ => self.point_with_room::<ROOM>(u, v),
+        }
+    }
+
+    fn point_with_room<const R: usize>(&self, u: f64, v: f64) -> DVec3 {
         let (u, v) = (self.u.clamp(u), self.v.clamp(v));
         let ((p, q), columns) = (self.degree(), self.columns());
         let (i0, j0) = (self.u.find_span(u) - p, self.v.find_span(v) - q);
-        let across = basis::functions(&self.u, i0 + p, u);
-        let along = basis::functions(&self.v, j0 + q, v);
+        let across = basis::functions::<R>(&self.u, i0 + p, u);
+        let along = basis::functions::<R>(&self.v, j0 + q, v);
         let row = |i: usize| (i0 + i) * columns + j0..=(i0 + i) * columns + j0 + q;
         match &self.weights {
             None => {
@@ -241,7 +249,9 @@ impl NurbsSurface {
         assert_eq!(out.len(), side * side, "the derivatives of order {order} need {side} * {side} entries");
         let (p, q) = self.degree();
         match p.max(q) {
-            0..=3 => self.derivatives_with_room::<4>(u, v, below, order, out),
+            0..=1 => self.derivatives_with_room::<2>(u, v, below, order, out),
+            2 => self.derivatives_with_room::<3>(u, v, below, order, out),
+            3 => self.derivatives_with_room::<4>(u, v, below, order, out),
             4..=7 => self.derivatives_with_room::<8>(u, v, below, order, out),
             _ => self.derivatives_with_room::<ROOM>(u, v, below, order, out),
         }

@@ -99,16 +99,18 @@ impl Reader<'_> {
         if !at_end && !is_break && !self.landmarks.cusps.contains(&u) {
             return Place::Interior;
         }
+        if at_end && !closed {
+            return Place::End;
+        }
         let (mut before, mut after) = ([DVec3::ZERO; 2], [DVec3::ZERO; 2]);
         curve.derivatives_from_left(if at_end && closed { last } else { u }, &mut before);
         curve.derivatives(if at_end && closed { first } else { u }, &mut after);
         let cusp = vanishes(before[1], curve) || vanishes(after[1], curve);
-        match (at_end, closed) {
-            (true, false) => Place::End,
+        match at_end {
             _ if cusp => Place::Cusp,
             _ if turns(before[1], after[1], 0.0) => Place::Crease,
-            (true, true) => Place::Seam,
-            (false, _) => Place::Interior,
+            true => Place::Seam,
+            false => Place::Interior,
         }
     }
 

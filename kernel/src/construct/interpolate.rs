@@ -91,7 +91,7 @@ impl System {
         let mut rows = vec![vec![0.0; 2 * p + 1]; count];
         for (i, u) in parameters.iter().enumerate() {
             let span = knots.find_span(*u);
-            let values = basis::functions(&knots, span, *u);
+            let values = basis::functions::<{ basis::ROOM }>(&knots, span, *u);
             for (k, value) in values[..=p].iter().enumerate().filter(|(_, value)| **value != 0.0) {
                 // column j of row i stands at j - i + p; it lies within, by Schoenberg and Whitney's condition
                 match (span + k).checked_sub(i).filter(|place| *place <= 2 * p) {

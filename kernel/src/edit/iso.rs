@@ -23,7 +23,7 @@ impl NurbsSurface {
             return Err(InvalidEdit::Parameter { along, at, first, last, inside: false });
         }
         let (p, span) = (held.degree(), held.find_span(at));
-        let blend = Blend::new(span - p, &basis::functions(held, span, at)[..=p]);
+        let blend = Blend::new(span - p, &basis::functions::<{ basis::ROOM }>(held, span, at)[..=p]);
         let (columns, weights) = (self.columns(), self.weights());
         let point = |k: usize| match direction {
             Direction::U => blend.of(&self.control_points, weights, |i| i * columns + k),

@@ -14,9 +14,12 @@ const DEPTH: u32 = 6;
 /// Pieces beyond this number are not halved.
 const PIECES: usize = 4096;
 
-/// How far the coefficients of a piece of degree 3 or more may be from a straight row, as a share of its length: Newton's method then
-/// starts with an error below that, and needs three steps.
+/// How far the coefficients of a piece of degree 3 or more may be from a straight row, as a share of its length: two steps then lead to
+/// the root.
 const STRAIGHT: f64 = 0.02;
+
+/// A step whose cube is below rounding.
+const CUBED: f64 = 3e-6;
 
 /// A coordinate that ascends with the parameter, and its inverse.
 #[derive(Debug)]
@@ -24,6 +27,8 @@ pub(super) struct Inverse {
     degree: usize,
     /// Pairs `(m, n)`: `degree + 1` a piece.
     coefficients: Vec<DVec2>,
+    /// The pair in the middle of each piece.
+    middles: Vec<DVec2>,
     /// The parameters where pieces begin and end.
     parameters: Vec<f64>,
     /// The pair at each of these.
@@ -45,6 +50,7 @@ impl Inverse {
         let mut inverse = Self {
             degree: knots.degree(),
             coefficients: Vec::new(),
+            middles: Vec::new(),
             parameters: vec![knots.domain().0],
             borders: vec![pair(&form[0])],
             weights: vec![form[0].w],
@@ -67,6 +73,7 @@ impl Inverse {
             inverse.parameters.push(piece.span.end);
             inverse.borders.push(last);
             inverse.weights.push(piece.points[piece.points.len() - 1].w);
+            inverse.middles.push(pair(&halves(piece).1.points[0]));
         }
         Some(inverse)
     }
@@ -100,13 +107,18 @@ impl Inverse {
                 f / (f - l)
             }
             [first, middle, last] => quadratic(along(first), along(middle), along(last)),
-            _ => {
-                let mut form = [0.0; MAX_DEGREE + 1];
-                for (f, pair) in form.iter_mut().zip(row) {
-                    *f = along(*pair);
+            [first, .., last] => {
+                // the parabola through the ends and the middle gives three digits
+                let (f, l) = (along(first), along(last));
+                let start = quadratic(f, 2.0 * along(self.middles[k]) - 0.5 * (f + l), l);
+                let form = row.iter().map(|pair| along(*pair));
+                match p {
+                    3 => root::<4>(form, p, start),
+                    4..=7 => root::<8>(form, p, start),
+                    _ => root::<{ MAX_DEGREE + 1 }>(form, p, start),
                 }
-                root(&form[..=p])
             }
+            [..] => 0.0,
         };
         let (start, end) = (self.parameters[k], self.parameters[k + 1]);
         (start + share * (end - start)).clamp(start, end)
@@ -171,32 +183,38 @@ fn quadratic(f: f64, m: f64, l: f64) -> f64 {
     if share.is_finite() { share } else { 0.5 }
 }
 
-/// A root in `[0, 1]` of a Bernstein form that begins below 0 and ends above: Newton's method, kept inside the bracket.
-fn root(form: &[f64]) -> f64 {
-    let p = form.len() - 1;
+/// A root in `[0, 1]` of a Bernstein form that begins below 0 and ends above, from a start: Halley's method, kept inside the bracket.
+fn root<const R: usize>(form: impl Iterator<Item = f64>, p: usize, start: f64) -> f64 {
+    let mut coefficients = [0.0; R];
+    coefficients.iter_mut().zip(form).for_each(|(c, f)| *c = f);
     let (mut low, mut high) = (0.0, 1.0);
-    let mut t = form[0] / (form[0] - form[p]);
+    let mut t = start;
     for _ in 0..64 {
-        let mut row = [0.0; MAX_DEGREE + 1];
-        row[..=p].copy_from_slice(form);
-        for k in (1..p).rev() {
+        let (mut row, other) = (coefficients, 1.0 - t);
+        for k in (2..p).rev() {
             for i in 0..=k {
-                row[i] = (1.0 - t) * row[i] + t * row[i + 1];
+                row[i] = other * row[i] + t * row[i + 1];
             }
         }
-        let value = (1.0 - t) * row[0] + t * row[1];
-        let slope = p as f64 * (row[1] - row[0]);
+        let bend = row[2] - 2.0 * row[1] + row[0];
+        let (before, after) = (other * row[0] + t * row[1], other * row[1] + t * row[2]);
+        let (value, slope) = (other * before + t * after, p as f64 * (after - before));
         if value < 0.0 {
             low = t;
         } else {
             high = t;
         }
-        let newton = t - value / slope;
-        // not `<`: a slope of 0 leads nowhere
-        let next = if newton >= low && newton <= high { newton } else { 0.5 * (low + high) };
+        let newton = value / slope;
+        // how much the slope changes over half of Newton's step, as a share of it
+        let turned = 0.5 * (p * (p - 1)) as f64 * bend * newton / slope;
+        let next = t - newton / (1.0 - turned);
+        // not outside, and not where a slope of 0 leads
+        let inside = next >= low && next <= high;
+        let next = if inside { next } else { 0.5 * (low + high) };
         let step = (next - t).abs();
         t = next;
-        if step <= f64::EPSILON * t.max(1.0 / 64.0) {
+        // the error left is about the step's cube; elsewhere the bracket closes
+        if inside && step <= CUBED && turned.abs() <= CUBED || step <= f64::EPSILON * t.max(1.0 / 64.0) {
             break;
         }
     }

@@ -95,7 +95,8 @@ impl Sector {
             return Ray { direction: DVec2::new(cos, sin), radial, across, from, rho, side };
         }
         let radial = if shift == 0.0 { rho } else { (q.x * (q.x + 2.0 * shift) + q.y * q.y) / (rho + shift) };
-        let direction = DVec2::new(from.x / rho, q.y / rho);
+        let inverse = 1.0 / rho;
+        let direction = DVec2::new(from.x * inverse, q.y * inverse);
         Ray { direction, radial, across: 0.0, from, rho, side: Side::Within }
     }
 
