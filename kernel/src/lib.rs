@@ -7,7 +7,7 @@
 //!   degree, splits, reversal, domain, maps of space) gives new ones, and all but knot removal leave the shape where it is.
 //! - [`Line`], [`Circle`], [`Ellipse`], [`Plane`], [`Cylinder`], [`Cone`], [`Sphere`] and [`Torus`] are plain data with exact
 //!   NURBS forms over `[0, 1]`: angles in radians, u along the profile, v around the axis, full turns closed in the same bits.
-//! - [`extrusion`], [`ruled`] and [`revolution`] make surfaces of curves; [`curve_through`] and [`surface_through`] interpolate.
+//! - [`extrusion`], [`ruled`], [`loft`] and [`revolution`] make surfaces of curves; [`curve_through`] and [`surface_through`] interpolate.
 //!
 //! ```
 //! use perpend_kernel::{Cylinder, Direction, Frame, glam::DVec3};
@@ -38,7 +38,9 @@ mod surface;
 
 pub use basis::binomial;
 pub use bounds::Aabb;
-pub use construct::{InvalidInterpolation, Spacing, curve_through, extrusion, revolution, ruled, surface_through};
+pub use construct::{
+    InvalidInterpolation, Spacing, curve_through, extrusion, loft, revolution, ruled, surface_through,
+};
 pub use curve::{CurveData, NurbsCurve};
 pub use definition::{Definition, DefinitionData};
 pub use edit::{InvalidEdit, KnotRemoval};

@@ -5,6 +5,7 @@ use glam::DVec3;
 use super::spacing::averaged_knots;
 use crate::basis;
 use crate::curve::COORDINATE_LIMIT;
+use crate::edit::InvalidEdit;
 use crate::invalid::InvalidDefinition;
 use crate::knots::{KnotVector, MAX_DEGREE};
 
@@ -46,6 +47,9 @@ pub enum InvalidInterpolation {
         /// The first row's length.
         expected: usize,
     },
+    /// The sections of a loft cannot be given one degree and one knot vector.
+    #[error("the sections cannot be given one degree and one knot vector: {0}")]
+    Sections(InvalidEdit),
     /// The result is not a valid definition.
     #[error("the result is not valid: {0}")]
     Result(#[from] InvalidDefinition),

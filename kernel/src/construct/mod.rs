@@ -1,7 +1,9 @@
 //! Constructions: surfaces from curves, and curves and surfaces through points.
 
+mod compatible;
 mod extrusion;
 mod interpolate;
+mod loft;
 mod revolution;
 mod ruled;
 mod spacing;
@@ -10,6 +12,7 @@ mod through_points;
 
 pub use extrusion::extrusion;
 pub use interpolate::InvalidInterpolation;
+pub use loft::loft;
 pub use revolution::revolution;
 pub use ruled::ruled;
 pub use spacing::Spacing;

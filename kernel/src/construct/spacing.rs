@@ -1,16 +1,18 @@
 //! Parameters for points that a curve shall pass.
 
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 use crate::invalid::{Along, InvalidDefinition};
 use crate::knots::KnotVector;
 
 /// How the parameters of interpolated points are spread over `[0, 1]`.
-#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Default, Serialize, Deserialize)]
 pub enum Spacing {
     /// Evenly. For points that are spread evenly themselves. The NURBS Book, equation 9.3.
     Uniform,
     /// By the lengths of the chords: speed is near constant. The NURBS Book, equation 9.5.
+    #[default]
     ChordLength,
     /// By the square roots of the chords: calmer round sharp turns. The NURBS Book, equation 9.6.
     Centripetal,

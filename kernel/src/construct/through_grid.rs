@@ -39,7 +39,7 @@ pub fn surface_through(
 }
 
 /// The mean of the lines' parameters.
-fn averaged(lines: &[Vec<DVec3>], spacing: Spacing) -> Result<Vec<f64>, InvalidInterpolation> {
+pub(super) fn averaged(lines: &[Vec<DVec3>], spacing: Spacing) -> Result<Vec<f64>, InvalidInterpolation> {
     let each: Vec<Vec<f64>> = lines.iter().filter_map(|line| spacing.parameters(line)).collect();
     let Some(first) = each.first() else { return Err(InvalidInterpolation::Repeated { index: 1 }) };
     let mut mean: Vec<f64> =
