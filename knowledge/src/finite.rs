@@ -270,7 +270,7 @@ impl ser::SerializeMap for Compound<'_> {
 #[cfg(test)]
 mod tests {
     use glam::DVec3;
-    use perpend_kernel::{EntityId, Fingerprint};
+    use perpend_kernel::{EntityId, Fingerprint, Spacing};
 
     use crate::{
         Basis, Classification, Intent, Item, Kind, Operation, Record, Relation, Relationship, Representation, Value,
@@ -304,8 +304,8 @@ mod tests {
         let record = Record { classification: Some(class), ..Record::default() };
         assert_eq!(field(&record), "classification.kind.value.direction[0]");
         let points = vec![DVec3::ZERO, DVec3::new(0.0, 0.0, f64::NEG_INFINITY)];
-        let operation = Operation::Interpolation { degree: (3, 0), points };
-        let intent = Intent { operation, inputs: Vec::new(), alternatives: Vec::new(), decision: String::new() };
+        let operation = Operation::Interpolation { degree: (3, 0), points, columns: 0, spacing: Spacing::Uniform };
+        let intent = Intent::new(operation, &[]);
         assert_eq!(field(&Record { intent: vec![intent], ..Record::default() }), "intent[0].operation.points[1][2]");
         let relationship = Relationship {
             kind: Relation::Offset,
