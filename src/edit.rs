@@ -8,6 +8,7 @@ use perpend_knowledge::{NonFinite, Record};
 use crate::enter::IntoDefinition;
 use crate::entity::Entity;
 use crate::model::Model;
+use crate::rebuild::{RebuildError, Staged};
 
 /// Why an edit was refused. The model is as it was.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -45,6 +46,9 @@ pub enum EditError {
         /// The entity that is missing.
         target: EntityId,
     },
+    /// An entity that is made of the edited one cannot be rebuilt, or the new record makes an entity of itself.
+    #[error(transparent)]
+    Rebuild(Box<RebuildError>),
     /// Another entity's record refers to the entity that is to be removed.
     #[error(
         "entity {id} is in use: knowledge.{field} of entity {by} refers to it; change that record or remove entity {by} first"
@@ -62,7 +66,8 @@ pub enum EditError {
 impl Model {
     /// Adds an entity as the last one and returns its id. Names need not be unique.
     ///
-    /// Unclamped knots are clamped, and the record says so; an analytic shape enters with its class.
+    /// Unclamped knots are clamped, and the record says so; an analytic shape enters with its class and the operation that makes
+    /// it.
     ///
     /// # Errors
     ///
@@ -83,24 +88,33 @@ impl Model {
         Ok(id)
     }
 
-    /// Gives an entity a new definition and raises its revision.
+    /// Gives an entity a new definition and raises its revision; then all that is made of it is made anew, in order of
+    /// dependence: all or nothing.
     ///
     /// Knowledge that was computed from the old definition is forgotten. Origin, destination, intent and relationships stay:
-    /// only those who stated them can say whether they still hold.
+    /// only those who stated them can say whether they still hold. So an entity that an operation had made is *overridden*: it
+    /// keeps the definition that it was given here when its inputs change, until it is [rebuilt](Self::rebuild),
+    /// [remade](Self::remake) or replaced by an analytic shape, whose own operation then is what makes it.
     ///
     /// # Errors
     ///
-    /// An unknown id; the first rule that the defining data break.
+    /// An unknown id; the first rule that the defining data break; an entity that is made of this one and cannot be rebuilt.
     pub fn replace(&mut self, id: EntityId, definition: impl IntoDefinition) -> Result<(), EditError> {
         let at = self.position(id)?;
         let entered = definition.enter().map_err(|source| EditError::Definition { id, source })?;
-        let entity = &mut self.entities[at];
-        let record = entity.record.get_or_insert_default();
+        let mut record = self.entities[at].record.clone().unwrap_or_default();
+        record.revision = record.revision.saturating_add(1);
         record.forget_stale(entered.definition.fingerprint());
-        entered.note(&mut entity.record);
-        entity.definition = Arc::new(entered.definition);
-        entity.prepared = OnceLock::new();
-        self.edited(at);
+        let mut record = Some(record);
+        entered.note(&mut record);
+        let is_same = entered.definition == *self.entities[at].definition;
+        let mut staged = Staged::new(self);
+        staged.set(id, Arc::new(entered.definition), record);
+        if !is_same {
+            staged.spread(id).map_err(|error| EditError::Rebuild(Box::new(error)))?;
+        }
+        let changes = staged.changes();
+        self.take_over(changes);
         Ok(())
     }
 
@@ -120,7 +134,8 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// An unknown id; a number that is not finite; a reference to an entity that the model does not have.
+    /// An unknown id; a number that is not finite; a reference to an entity that the model does not have; steps that would make
+    /// the entity of itself.
     pub fn set_record(&mut self, id: EntityId, record: Record) -> Result<(), EditError> {
         let at = self.position(id)?;
         record.validate().map_err(|source| EditError::Knowledge { id, source })?;
@@ -129,6 +144,8 @@ impl Model {
                 return Err(EditError::DanglingReference { id, field, target });
             }
         }
+        let inputs = record.made_from();
+        self.check_inputs(id, inputs.iter()).map_err(|error| EditError::Rebuild(Box::new(error)))?;
         let entity = &mut self.entities[at];
         let revision = entity.revision().max(record.revision);
         entity.record = Some(Record { revision, ..record });
@@ -164,7 +181,8 @@ impl Model {
     }
 
     fn edited(&mut self, at: usize) {
-        self.entities[at].record.get_or_insert_default().revision += 1;
+        let record = self.entities[at].record.get_or_insert_default();
+        record.revision = record.revision.saturating_add(1);
         self.overview = OnceLock::new();
     }
 }

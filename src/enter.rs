@@ -4,7 +4,7 @@ use perpend_kernel::clamp::Entry;
 use perpend_kernel::{
     CurveData, Definition, DefinitionData, Direction, InvalidDefinition, NurbsCurve, NurbsSurface, SurfaceData,
 };
-use perpend_knowledge::{Basis, Cleaning, Item, Kind, Record};
+use perpend_knowledge::{Basis, Cleaning, Intent, Item, Kind, Operation, Record};
 
 /// What can enter a model: a definition, data that become one if they are valid, or an analytic shape, which enters as its
 /// exact NURBS form.
@@ -26,10 +26,12 @@ pub struct Entered {
     pub entry: Entry,
     /// The class of an analytic shape.
     pub kind: Option<Kind>,
+    /// The operation that makes an analytic shape.
+    pub operation: Option<Operation>,
 }
 
 impl Entered {
-    /// Adds to the record what the entry tells: the class, and what had to be done.
+    /// Adds to the record what the entry tells: the class, the operation, and what had to be done.
     pub(crate) fn note(&self, record: &mut Option<Record>) {
         let of = self.definition.fingerprint();
         if let Some(kind) = &self.kind {
@@ -37,6 +39,21 @@ impl Entered {
             let tolerance = 1e-10 * self.definition.size();
             let item = Item { value: kind.clone(), basis: Basis::Defined, tolerance, of };
             record.get_or_insert_default().classification.get_or_insert_default().kind = Some(item);
+        }
+        if let Some(operation) = &self.operation {
+            let record = record.get_or_insert_default();
+            let step = Intent { of: Some(of), ..Intent::new(operation.clone(), &[]) };
+            record.relationships.retain(|edge| !edge.is_of_operation());
+            match record.intent.last_mut().filter(|last| gives_way(last, operation)) {
+                Some(last) => *last = Intent { operation: step.operation, of: step.of, ..last.clone() },
+                None => record.intent.push(step),
+            }
+        } else if let Some(record) = record
+            && record.making().is_some_and(|making| making.is_by_data())
+            && let Some(last) = record.intent.last_mut()
+        {
+            // data that were entered make way for data
+            last.of = last.of.map(|_| of);
         }
         for (direction, clamped) in [Direction::U, Direction::V].into_iter().zip(self.entry.clamped) {
             if clamped {
@@ -52,9 +69,15 @@ impl Entered {
     }
 }
 
+/// Whether a step can be overwritten by one of another operation that takes no entities: nothing that it says is lost.
+fn gives_way(step: &Intent, operation: &Operation) -> bool {
+    let says_nothing = step.alternatives.is_empty() && step.decision.is_empty();
+    step.inputs.is_empty() && (says_nothing || step.operation.name() == operation.name())
+}
+
 impl From<Definition> for Entered {
     fn from(definition: Definition) -> Self {
-        Self { definition, entry: Entry::default(), kind: None }
+        Self { definition, entry: Entry::default(), kind: None, operation: None }
     }
 }
 
@@ -79,7 +102,7 @@ impl IntoDefinition for NurbsSurface {
 impl IntoDefinition for DefinitionData {
     fn enter(self) -> Result<Entered, InvalidDefinition> {
         let (definition, entry) = Self::enter(self)?;
-        Ok(Entered { definition, entry, kind: None })
+        Ok(Entered { entry, ..definition.into() })
     }
 }
 

@@ -23,17 +23,23 @@
 //! `f64`.
 
 mod batch;
+mod dependence;
 mod edit;
 mod enter;
 mod entity;
 mod explain;
 mod file;
+mod impact;
 mod learn;
+mod make;
 mod model;
 mod nearest;
 mod projector;
 mod query;
+mod rebuild;
+mod replay;
 mod shapes;
+mod standing;
 mod trust;
 mod units;
 mod written;
@@ -42,8 +48,12 @@ pub use edit::EditError;
 pub use enter::{Entered, IntoDefinition};
 pub use entity::{Entity, EntityError};
 pub use file::{AtomicFile, InvalidModel, ModelError, ReadError, WriteError};
+pub use impact::{Effect, Impact};
+pub use make::MakeError;
 pub use model::Model;
 pub use projector::Projector;
+pub use rebuild::RebuildError;
+pub use replay::{Replay, ReplayError};
 pub use trust::Trust;
 pub use units::Units;
 
@@ -57,6 +67,7 @@ pub use perpend_knowledge::{
     self as knowledge, AcquireOptions, Basis, Categories, Category, Classification, Cleaning, Contradiction,
     Definitions, Intent, Item, Kind, Operation, Origin, Record, Refuted, Relation, Relationship, Representation,
 };
+pub use perpend_knowledge::{BuildError, Deviation, Difference, Shape};
 pub use perpend_projection::{
     self as projection, Continuum, Decomposition, FootPoint, Method, Multiplicity, NewtonTolerances, Parameter,
     ParameterBox, Place, Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch, Settings, Statistics, Ties,

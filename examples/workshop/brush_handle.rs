@@ -4,7 +4,7 @@
 
 use std::f64::consts::TAU;
 
-use perpend::{DVec3, Model, Operation, SurfaceData};
+use perpend::{DVec3, Model, SurfaceData};
 
 use super::dust_pan::clamped;
 use super::known::{self, Known};
@@ -60,6 +60,6 @@ pub(crate) fn add(model: &mut Model) -> Outcome<()> {
     let knots = (clamped(SECTIONS.len()), around);
     let handle = SurfaceData { degree: (3, 3), knots, control_points, weights: None };
     let decision = "periodic around: no edge under the fingers";
-    known::add(model, "brush handle", handle, Known::designed("turning").made_by(Operation::ByData, &[], decision))?;
+    known::add(model, "brush handle", handle, Known::designed("turning").because(decision))?;
     Ok(())
 }

@@ -2,7 +2,7 @@
 
 use std::f64::consts::TAU;
 
-use perpend::kernel::{Spacing, curve_through};
+use perpend::kernel::Spacing;
 use perpend::{CurveData, DVec3, Model, Operation};
 
 use super::known::{self, Known};
@@ -25,7 +25,7 @@ pub(crate) fn add(model: &mut Model) -> Outcome<()> {
         ]),
         weights: None,
     };
-    known::add(model, "S curve", s, Known::designed("styling").made_by(Operation::ByData, &[], ""))?;
+    known::add(model, "S curve", s, Known::designed("styling"))?;
 
     // eleven inflections
     let wave: Vec<DVec3> = (0..=48)
@@ -43,7 +43,7 @@ pub(crate) fn add(model: &mut Model) -> Outcome<()> {
         control_points: flat(&[(-60.0, 160.0), (-50.0, 290.0), (20.0, 360.0), (90.0, 290.0), (100.0, 160.0)]),
         weights: Some(vec![1.0, 1.5, 0.5, 1.5, 1.0]),
     };
-    known::add(model, "arch", arch, Known::designed("styling").made_by(Operation::ByData, &[], ""))?;
+    known::add(model, "arch", arch, Known::designed("styling"))?;
 
     let coil: Vec<DVec3> = (0..=40)
         .map(|k| {
@@ -57,8 +57,8 @@ pub(crate) fn add(model: &mut Model) -> Outcome<()> {
 
 /// Adds the cubic through some points.
 fn through(model: &mut Model, name: &str, points: &[DVec3]) -> Outcome<()> {
-    let curve = curve_through(points, 3, Spacing::ChordLength)?;
-    let operation = Operation::Interpolation { degree: (3, 0), points: points.to_vec() };
-    known::add(model, name, curve, Known::designed("bending").made_by(operation, &[], ""))?;
+    let (points, spacing) = (points.to_vec(), Spacing::ChordLength);
+    let operation = Operation::Interpolation { degree: (3, 0), points, columns: 0, spacing };
+    known::make(model, name, operation, &[], Known::designed("bending"))?;
     Ok(())
 }

@@ -3,7 +3,7 @@
 //! In the spirit of Piegl et al. 2008, Fig. 7: a wide flat floor, tight concave corners, a back wall, a narrow neck, and a handle
 //! that is an open channel.
 
-use perpend::{DVec3, Model, Operation, SurfaceData};
+use perpend::{DVec3, Model, SurfaceData};
 
 use super::known::{self, Known};
 use super::{Outcome, rounded};
@@ -53,7 +53,7 @@ pub(crate) fn add(model: &mut Model) -> Outcome<()> {
     let knots = (clamped(SECTIONS.len()), clamped(template.len()));
     let pan = SurfaceData { degree: (3, 3), knots, control_points, weights: None };
     let decision = "one sheet, so that it can be pressed in one stroke";
-    known::add(model, "dust pan", pan, Known::designed("moulding").made_by(Operation::ByData, &[], decision))?;
+    known::add(model, "dust pan", pan, Known::designed("moulding").because(decision))?;
     Ok(())
 }
 

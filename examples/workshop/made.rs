@@ -2,8 +2,8 @@
 
 use std::f64::consts::{PI, TAU};
 
-use perpend::kernel::{Spacing, curve_through, extrusion, revolution, ruled};
-use perpend::{Circle, DVec3, Definition, Direction, Frame, Kind, Line, Model, Operation, Relation, SurfaceData};
+use perpend::kernel::Spacing;
+use perpend::{Circle, DVec3, Frame, Line, Model, Operation, SurfaceData};
 
 use super::dust_pan::clamped;
 use super::known::{self, Known};
@@ -36,7 +36,7 @@ fn knife(model: &mut Model) -> Outcome<()> {
     let control_points: Vec<Vec<DVec3>> = stations.iter().map(row).collect();
     let knots = (clamped(stations.len()), vec![0.0, 0.0, 0.5, 1.0, 1.0]);
     let blade = SurfaceData { degree: (3, 1), knots, control_points, weights: None };
-    known::add(model, "knife", blade, Known::designed("grinding").made_by(Operation::ByData, &[], ""))?;
+    known::add(model, "knife", blade, Known::designed("grinding"))?;
     Ok(())
 }
 
@@ -46,15 +46,11 @@ fn chute(model: &mut Model) -> Outcome<()> {
     let inlet = Circle::new(frame, 40.0, (PI, TAU))?;
     let outlet = Line::new(DVec3::new(-320.0, -30.0, 20.0), DVec3::new(-320.0, 30.0, 20.0))?;
     let rails = [
-        known::add(model, "chute inlet", inlet, Known::designed("machining"))?,
-        known::add(model, "chute outlet", outlet, Known::designed("machining"))?,
+        known::make(model, "chute inlet", inlet, &[], Known::designed("machining"))?,
+        known::make(model, "chute outlet", outlet, &[], Known::designed("machining"))?,
     ];
-    let made = Known::derived("ruled", &rails, "bending")
-        .kind(Kind::Ruled { ruling: Direction::V })
-        .made_by(Operation::Rule, &rails, "ruled, so that it rolls from flat sheet")
-        .related(Relation::Rail, rails[0])
-        .related(Relation::Rail, rails[1]);
-    known::add(model, "chute", ruled(&inlet.to_nurbs()?, &outlet.to_nurbs()?)?, made)?;
+    let known = Known::designed("bending").because("ruled, so that it rolls from flat sheet");
+    known::make(model, "chute", Operation::Rule, &rails, known)?;
     Ok(())
 }
 
@@ -74,29 +70,17 @@ fn vase(model: &mut Model) -> Outcome<()> {
         (24.0, 140.0),
     ];
     let points: Vec<DVec3> = outline.iter().map(|(r, z)| rounded(foot + DVec3::new(*r, 0.0, *z))).collect();
-    let profile = curve_through(&points, 3, Spacing::Centripetal)?;
-    let operation = Operation::Interpolation { degree: (3, 0), points };
-    let made = Known::designed("styling").made_by(operation, &[], "");
-    let profile_id = known::add(model, "vase profile", profile.clone(), made)?;
-
-    let made = Known::derived("revolution", &[profile_id], "turning")
-        .kind(Kind::Revolution { origin: foot, axis: DVec3::Z, sweep: TAU, angular: Direction::V })
-        .made_by(Operation::Revolve { origin: foot, axis: DVec3::Z, angle: TAU }, &[profile_id], "")
-        .related(Relation::Profile, profile_id);
-    known::add(model, "vase", revolution(&profile, foot, DVec3::Z, TAU)?, made)?;
+    let profile = Operation::Interpolation { degree: (3, 0), points, columns: 0, spacing: Spacing::Centripetal };
+    let profile = known::make(model, "vase profile", profile, &[], Known::designed("styling"))?;
+    let turned = Operation::Revolve { origin: foot, axis: DVec3::Z, angle: TAU };
+    known::make(model, "vase", turned, &[profile], Known::designed("turning"))?;
     Ok(())
 }
 
 /// The wave, moved upwards.
 fn corrugated_sheet(model: &mut Model) -> Outcome<()> {
-    let wave = model.named("wave").next().expect("the curves come first");
-    let Definition::NurbsCurve(profile) = wave.definition().as_ref() else { unreachable!("the wave is a curve") };
-    let (profile_id, vector) = (wave.id(), DVec3::new(0.0, 0.0, 80.0));
-    let sheet = extrusion(profile, vector)?;
-    let made = Known::derived("extrusion", &[profile_id], "bending")
-        .kind(Kind::Extrusion { vector, along: Direction::V })
-        .made_by(Operation::Extrude { vector }, &[profile_id], "")
-        .related(Relation::Profile, profile_id);
-    known::add(model, "corrugated sheet", sheet, made)?;
+    let wave = model.named("wave").next().expect("the curves come first").id();
+    let raised = Operation::Extrude { vector: DVec3::new(0.0, 0.0, 80.0) };
+    known::make(model, "corrugated sheet", raised, &[wave], Known::designed("bending"))?;
     Ok(())
 }

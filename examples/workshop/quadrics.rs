@@ -2,9 +2,7 @@
 
 use std::f64::consts::{FRAC_PI_2, FRAC_PI_6, PI, TAU};
 
-use perpend::{
-    Circle, Cone, Cylinder, DVec3, Ellipse, Frame, IntoDefinition, Line, Model, Operation, Plane, Sphere, Torus,
-};
+use perpend::{Circle, Cone, Cylinder, DVec3, Ellipse, Frame, Line, Model, Operation, Plane, Sphere, Torus};
 
 use super::Outcome;
 use super::known::{self, Known};
@@ -39,13 +37,10 @@ pub(crate) fn add(model: &mut Model) -> Outcome<()> {
     machined(model, "bail", Circle::new(across, 70.0, (FRAC_PI_6, PI - FRAC_PI_6))?)?;
     machined(model, "oval", Ellipse::whole(upright(330.0, 300.0, 1.0), (40.0, 25.0))?)?;
 
-    let line = Line::new(DVec3::new(-560.0, 60.0, 1.0), DVec3::new(-160.0, 60.0, 1.0))?;
-    let operation = Operation::LineByPoints { start: line.start, end: line.end };
-    known::add(model, "straightedge", line, Known::designed("machining").made_by(operation, &[], ""))?;
-    Ok(())
+    machined(model, "straightedge", Line::new(DVec3::new(-560.0, 60.0, 1.0), DVec3::new(-160.0, 60.0, 1.0))?)
 }
 
-fn machined(model: &mut Model, name: &str, shape: impl IntoDefinition) -> Outcome<()> {
-    known::add(model, name, shape, Known::designed("machining"))?;
+fn machined(model: &mut Model, name: &str, shape: impl Into<Operation>) -> Outcome<()> {
+    known::make(model, name, shape, &[], Known::designed("machining"))?;
     Ok(())
 }

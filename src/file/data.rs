@@ -6,6 +6,7 @@ use perpend_kernel::EntityId;
 use perpend_knowledge::Record;
 use serde::Deserialize;
 
+use crate::dependence::Dependence;
 use crate::entity::{Entity, EntityData, EntityError};
 use crate::file::error::{InvalidModel, ModelError};
 use crate::file::outline::{Outline, line_at};
@@ -67,6 +68,10 @@ pub(super) fn read(text: &str, trust: Trust) -> Result<Model, ModelError> {
         if let Some((field, target)) = references.into_iter().find(|(_, target)| !ids.contains_key(target)) {
             return Err(lines.wrong(index, entity.id, InvalidModel::DanglingReference { field, target }));
         }
+    }
+    if let Some(circle) = Dependence::of(&entities, &ids).any_circle() {
+        let circle_ids = circle.iter().map(|at| entities[*at].id).collect();
+        return Err(lines.wrong(circle[0], entities[circle[0]].id, InvalidModel::Cycle { circle: circle_ids }));
     }
     let highest = entities.iter().map(Entity::id).max();
     let next_id = match (data.next_id, highest) {

@@ -7,6 +7,7 @@ use std::path::PathBuf;
 use perpend_kernel::{EntityId, InvalidDefinition};
 use perpend_knowledge::{Contradiction, NonFinite, Refuted};
 
+use crate::dependence::shown;
 use crate::trust::FIELD;
 
 /// Why a model could not be read from a file.
@@ -125,6 +126,12 @@ pub enum InvalidModel {
         field: String,
         /// The entity that is missing.
         target: EntityId,
+    },
+    /// Entities are made of each other in a circle.
+    #[error("knowledge: intent: the entity is made of itself ({}): remove one of these inputs", shown(circle))]
+    Cycle {
+        /// Entities each of which is made of the one before it, and the first of the last.
+        circle: Vec<EntityId>,
     },
     /// A definition breaks a rule.
     #[error("definition: {0}")]

@@ -2,6 +2,7 @@
 
 use std::collections::BTreeMap;
 
+use perpend::kernel::Spacing;
 use perpend::knowledge::{Break, Checked, Irregularity, ParameterPoint, SpanSpeed, Speed, Value};
 use perpend::{
     Aabb, Basis, Category, Classification, Cleaning, CurveData, DVec3, Definition, DefinitionData, Direction, EntityId,
@@ -259,17 +260,24 @@ fn representation() -> impl Strategy<Value = Representation> {
 
 fn operation() -> impl Strategy<Value = Operation> {
     prop_oneof![
-        (vector(), vector(), number()).prop_map(|(centre, axis, radius)| Operation::CircleByCentre {
-            centre,
-            axis,
-            radius
+        (vector(), vector(), number(), option::of(vector()))
+            .prop_map(|(centre, axis, radius, xdir)| { Operation::CircleByCentre { centre, axis, radius, xdir } }),
+        (vec(vector(), 0..20), 0..4_u64, spacing()).prop_map(|(points, columns, spacing)| Operation::Interpolation {
+            degree: (3, 0),
+            points,
+            columns,
+            spacing
         }),
-        vec(vector(), 0..20).prop_map(|points| Operation::Interpolation { degree: (3, 0), points }),
+        (number(), option::of(vector())).prop_map(|(distance, normal)| Operation::Offset { distance, normal }),
         (vector(), vector()).prop_map(|(x, translation)| Operation::Transform { columns: (x, x, x), translation }),
         Just(Operation::Rule),
         (direction(), range()).prop_map(|(direction, range)| Operation::Split { direction, range }),
         text().prop_map(|name| Operation::Other { name }),
     ]
+}
+
+fn spacing() -> impl Strategy<Value = Spacing> {
+    prop::sample::select(vec![Spacing::Uniform, Spacing::ChordLength, Spacing::Centripetal])
 }
 
 fn relationship() -> impl Strategy<Value = Relationship> {
@@ -293,8 +301,10 @@ fn relationship() -> impl Strategy<Value = Relationship> {
 
 /// A record whose only references are to entity 1.
 pub(crate) fn record() -> impl Strategy<Value = Record> {
-    let intent = (operation(), vec(Just(EntityId::new(1)), 0..3), vec(text(), 0..2), text())
-        .prop_map(|(operation, inputs, alternatives, decision)| Intent { operation, inputs, alternatives, decision });
+    let said = (vec(text(), 0..2), text());
+    let intent = (operation(), vec(Just(EntityId::new(1)), 0..3), said, option::of(fingerprint())).prop_map(
+        |(operation, inputs, (alternatives, decision), of)| Intent { operation, inputs, alternatives, decision, of },
+    );
     (
         0..u64::MAX / 2,
         option::of(classification()),
@@ -319,7 +329,11 @@ pub(crate) fn model() -> impl Strategy<Value = Model> {
         model.set_units(units);
         for (name, definition, record) in entities {
             let id = model.insert(&name, definition).expect("a valid definition");
-            if let Some(record) = record {
+            if let Some(mut record) = record {
+                if id == EntityId::new(1) {
+                    // nothing is made of itself
+                    record.intent.iter_mut().for_each(|step| step.inputs.clear());
+                }
                 model.set_record(id, record).expect("a valid record");
             }
         }
