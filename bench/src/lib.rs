@@ -1,6 +1,6 @@
 //! Benchmarks of perpend: questions that an application would ask, with the worst error seen beside every time.
 
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use glam::DVec3;
 use perpend_kernel::{Definition, InvalidDefinition, NurbsCurve, NurbsSurface};
@@ -91,4 +91,11 @@ pub fn rows(path: &Path) -> Result<Vec<Row>, Box<dyn std::error::Error>> {
             Ok(Row { entity, point, distance: number()? })
         })
         .collect()
+}
+
+/// The folder of the test corpora: `tests/data` of the workspace, or what the environment variable `PERPEND_CORPUS` names.
+#[must_use]
+pub fn corpora() -> PathBuf {
+    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
+    std::env::var_os("PERPEND_CORPUS").map_or(workspace, PathBuf::from)
 }

@@ -3,13 +3,16 @@
 use perpend::{Method, Multiplicity, Place};
 
 /// All methods that can be asked for.
-pub(crate) const METHODS: [Method; 3] = [Method::Analytic, Method::Hierarchy, Method::Wave];
+pub(crate) const METHODS: [Method; 5] =
+    [Method::Analytic, Method::Hierarchy, Method::Wave, Method::Exclusion, Method::ControlPolygon];
 
 pub(crate) fn method(method: Method) -> &'static str {
     match method {
         Method::Analytic => "analytic",
         Method::Hierarchy => "hierarchy",
         Method::Wave => "wave",
+        Method::Exclusion => "exclusion",
+        Method::ControlPolygon => "control-polygon",
     }
 }
 

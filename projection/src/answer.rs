@@ -72,6 +72,10 @@ pub enum Method {
     Hierarchy,
     /// A cubical wave through uniform cells, then Newton's method (Piegl et al. 2008).
     Wave,
+    /// Subdivision with the exclusion criteria of Selimovic 2006.
+    Exclusion,
+    /// The same subdivision with the control-polygon test of Ma and Hewitt 2003, the comparator of Selimovic's tables.
+    ControlPolygon,
 }
 
 /// The nearest point of an entity to a query point, with its proof.

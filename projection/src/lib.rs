@@ -4,6 +4,7 @@ mod analytic;
 mod answer;
 mod closed_form;
 mod dispatch;
+mod exclusion;
 mod foot;
 mod hierarchy;
 mod landmarks;

@@ -9,6 +9,7 @@ use perpend_knowledge::Record;
 use crate::answer::{Continuum, FootPoint, Method, Ties};
 use crate::closed_form::ClosedForm;
 use crate::dispatch::{Dispatched, dispatch};
+use crate::exclusion::{Criteria, Exclusion};
 use crate::foot::Reader;
 use crate::hierarchy::{Hierarchy, TieSet};
 use crate::landmarks::Landmarks;
@@ -29,7 +30,10 @@ pub struct Prepared {
     closed_form: Option<ClosedForm>,
     /// Built when the first query needs it: where a closed form answers, none may.
     hierarchy: OnceLock<Hierarchy>,
+    /// Built when a query first names them.
     wave: OnceLock<Wave>,
+    exclusion: OnceLock<Exclusion>,
+    control_polygon: OnceLock<Exclusion>,
 }
 
 impl Prepared {
@@ -50,6 +54,8 @@ impl Prepared {
             closed_form,
             hierarchy: OnceLock::new(),
             wave: OnceLock::new(),
+            exclusion: OnceLock::new(),
+            control_polygon: OnceLock::new(),
         }
     }
 
@@ -136,7 +142,13 @@ impl Prepared {
         match method {
             Method::Analytic | Method::Hierarchy => None,
             Method::Wave => Some(self.wave()),
+            Method::Exclusion => Some(self.subdivision(&self.exclusion, Criteria::Selimovic)),
+            Method::ControlPolygon => Some(self.subdivision(&self.control_polygon, Criteria::ControlPolygon)),
         }
+    }
+
+    fn subdivision<'a>(&self, cell: &'a OnceLock<Exclusion>, criteria: Criteria) -> &'a Exclusion {
+        cell.get_or_init(|| Exclusion::new(&self.definition, criteria))
     }
 
     fn hierarchy(&self) -> &Hierarchy {

@@ -7,6 +7,10 @@ use crate::answer::Method;
 /// The gap of a query that asks for none, as a share of the entity's size.
 pub(crate) const DEFAULT_GAP: f64 = 1e-9;
 
+/// The flatness at which subdivision ends unless a query names one, as a share of the entity's size: the middle of the range that was measured
+/// (`docs/papers.md`); it costs or spares work and changes no proof.
+pub(crate) const DEFAULT_FLATNESS: f64 = 1e-3;
+
 /// What a query asks for. The default is what an inspection wants; none of these is part of what was prepared.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct QueryOptions {
@@ -24,6 +28,9 @@ pub struct QueryOptions {
     pub method: Option<Method>,
     /// Where Newton's method stops in a solver that only proposes. It weakens no proof.
     pub newton: NewtonTolerances,
+    /// Solvers that split an entity until its parts are flat take a part as flat when its control points lie within this of a line or
+    /// plane, in the model's unit; none: 1e-3 times the size.
+    pub flatness: Option<f64>,
     /// How often a query may split a form before it answers with the gap that it reached.
     pub work: u32,
 }
@@ -52,6 +59,7 @@ impl Default for QueryOptions {
             coincidence: None,
             method: None,
             newton: NewtonTolerances::default(),
+            flatness: None,
             work: 20_000,
         }
     }
@@ -70,6 +78,7 @@ impl QueryOptions {
             ("coincidence", self.coincidence),
             ("newton.coincidence", self.newton.coincidence),
             ("newton.perpendicularity", Some(self.newton.perpendicularity)),
+            ("flatness", self.flatness),
         ];
         for (option, value) in lengths {
             if let Some(value) = value

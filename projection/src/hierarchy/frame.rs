@@ -37,7 +37,7 @@ impl Frame {
     /// The definition's control points in these coordinates, homogeneous, and whether their weights differ at all.
     ///
     /// Weights are divided by the largest. Where all are equal the entity is polynomial, whatever their value.
-    pub(super) fn net(&self, definition: &Definition) -> (Vec<DVec4>, bool) {
+    pub(crate) fn net(&self, definition: &Definition) -> (Vec<DVec4>, bool) {
         let points = definition.control_points();
         match definition.weights() {
             Some(weights) if weights.iter().any(|w| *w != weights[0]) => {

@@ -1,0 +1,30 @@
+//! The tables of the papers, measured anew: `papers [selimovic]`, all of them without a name.
+//!
+//! The test corpora are read from `tests/data`, or from the folder that the environment variable `PERPEND_CORPUS` names.
+
+#![allow(clippy::print_stdout, reason = "a benchmark prints its tables")]
+
+#[path = "../papers/selimovic.rs"]
+mod selimovic;
+
+type Failure = Box<dyn std::error::Error>;
+
+/// Prints the tables of a paper.
+type Print = fn() -> Result<(), Failure>;
+
+/// The papers by their names on the command line.
+const PAPERS: [(&str, Print); 1] = [("selimovic", selimovic::print)];
+
+fn main() -> Result<(), Failure> {
+    let wanted: Vec<String> = std::env::args().skip(1).collect();
+    if let Some(unknown) = wanted.iter().find(|name| PAPERS.iter().all(|(paper, _)| paper != name)) {
+        let known: Vec<&str> = PAPERS.iter().map(|(paper, _)| *paper).collect();
+        return Err(format!("no paper is called {unknown}; usage: papers [{}]", known.join("|")).into());
+    }
+    for (paper, print) in PAPERS {
+        if wanted.is_empty() || wanted.iter().any(|name| name == paper) {
+            print()?;
+        }
+    }
+    Ok(())
+}
