@@ -1,5 +1,5 @@
 //! Shapes with a closed form are answered to the last digits: on and beside every set where a foot is not alone or not regular, at
-//! every scale and place, however they are cut, parametrised and described.
+//! every scale and place, however they are cut, parametrised and described; and it is the closed form that answers.
 //!
 //! Distances are held to `common/exact`, which enumerates all stationary points, edges and corners to 30 digits and shares nothing
 //! with the solvers.
@@ -8,6 +8,8 @@
 
 mod common;
 
+#[path = "analytic/almost.rs"]
+mod almost;
 #[path = "analytic/case.rs"]
 mod case;
 #[path = "analytic/forms.rs"]

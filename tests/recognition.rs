@@ -6,14 +6,14 @@ mod common;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 use common::corpus;
-use common::disguise::disguised;
+use common::disguise::{disguised, moved};
 use common::kinds::{at, distance, gap, name, turn};
 use common::random::Random;
 use glam::DVec3;
 use perpend::knowledge::{default_tolerance, prove, recognise};
 use perpend::{
     Circle, Cone, Cylinder, Definition, Direction, Ellipse, Frame, IntoDefinition, Item, Kind, Line, Model, NurbsCurve,
-    NurbsSurface, Plane, Sphere, Torus,
+    Plane, Sphere, Torus,
 };
 use serde_json::Value;
 
@@ -267,31 +267,6 @@ fn almost_shapes_are_never_accepted_beyond_what_they_are_off() {
         }
     }
     assert!(refused > 300, "{refused} of 960: a moved control point makes most of them something else");
-}
-
-/// The definition with one control point moved by `off`.
-fn moved(random: &mut Random, definition: &Definition, off: f64) -> Definition {
-    let step = off * random.direction();
-    match definition {
-        Definition::NurbsCurve(curve) => {
-            let mut points = curve.control_points().to_vec();
-            let k = random.count(0, points.len() - 1);
-            points[k] += step;
-            let knots = curve.knots().as_slice().to_vec();
-            NurbsCurve::new(curve.degree(), knots, points, curve.weights().map(<[f64]>::to_vec)).expect("valid").into()
-        }
-        Definition::NurbsSurface(surface) => {
-            let mut points = surface.control_points().to_vec();
-            let k = random.count(0, points.len() - 1);
-            points[k] += step;
-            let columns = surface.columns();
-            let knots = [Direction::U, Direction::V].map(|d| surface.knots(d).as_slice().to_vec());
-            let [u, v] = knots;
-            let rows = points.chunks(columns).map(<[DVec3]>::to_vec).collect();
-            let weights = surface.weights().map(|w| w.chunks(columns).map(<[f64]>::to_vec).collect());
-            NurbsSurface::new(surface.degree(), (u, v), rows, weights).expect("valid").into()
-        }
-    }
 }
 
 #[test]

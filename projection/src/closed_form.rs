@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use perpend_kernel::Definition;
+use perpend_kernel::{Definition, NurbsCurve};
 
 use crate::analytic::{Analytic, Proposal};
 use crate::answer::Method;
@@ -32,8 +32,13 @@ impl ClosedForm {
 
     /// The definition at a proposal's parameters, seen from the query.
     fn evaluate(&self, query: &Query, proposal: &Proposal) -> Solution {
-        let &Proposal { u, v, lower_bound, tie } = proposal;
+        let &Proposal { mut u, v, lower_bound, tie } = proposal;
         let (point, normal) = match &*self.definition {
+            Definition::NurbsCurve(curve) if self.analytic.is_elliptic() => {
+                let point;
+                (u, point) = polished(curve, u, query.point, f64::EPSILON * self.reach);
+                (point, DVec3::ZERO)
+            }
             Definition::NurbsCurve(curve) => (curve.point(u), DVec3::ZERO),
             Definition::NurbsSurface(surface) => {
                 let mut d = [DVec3::ZERO; 4];
@@ -54,6 +59,25 @@ impl ClosedForm {
             tie,
         }
     }
+}
+
+/// The foot's parameter after a step of Gauss and Newton on the curve, where that is nearer by more than rounding, an `ulp` of the
+/// coordinates; with the point there.
+///
+/// The angle on a flat ellipse is known to rounding of the larger half-axis over the smaller one; its points can be had to rounding.
+fn polished(curve: &NurbsCurve, u: f64, p: DVec3, ulp: f64) -> (f64, DVec3) {
+    let mut d = [DVec3::ZERO; 2];
+    curve.derivatives(u, &mut d);
+    let (first, last) = curve.domain();
+    let step = (d[0] - p).dot(d[1]) / d[1].length_squared();
+    let next = (u - step).clamp(first, last);
+    if step.is_finite() && next != u {
+        let point = curve.point(next);
+        if point.distance(p) + 2.0 * ulp < d[0].distance(p) {
+            return (next, point);
+        }
+    }
+    (u, d[0])
 }
 
 impl Solver for ClosedForm {

@@ -2,7 +2,7 @@
 
 use perpend::Model;
 
-use super::case::{Case, Tally};
+use super::case::{Case, Tally, nearly_all};
 use super::probes::{probes, special};
 use super::shapes::{CLASSES, Standing, shape};
 use crate::common::exact::Exact;
@@ -28,7 +28,7 @@ fn asked(seed: u64, rounds: usize, standing: impl Fn(&mut Random) -> Standing) {
             case.ask(&probes(&special, &Shape::of(&exact.made().0), 60, &mut random), &mut tally);
         }
     }
-    tally.settle();
+    tally.settle(nearly_all);
 }
 
 #[test]

@@ -1,4 +1,4 @@
-//! The same set of points in another form: other parameters, degrees, knots, directions.
+//! The same set of points in another form: other parameters, degrees, knots, directions; and one that is a little off.
 
 use glam::DVec3;
 use perpend::{Definition, Direction, NurbsCurve, NurbsSurface};
@@ -73,6 +73,31 @@ pub fn disguised(random: &mut Random, definition: &Definition) -> Definition {
                 }
             }
             if random.chance(0.5) { surface.swapped().into() } else { surface.into() }
+        }
+    }
+}
+
+/// The definition with one control point moved by `off`.
+pub fn moved(random: &mut Random, definition: &Definition, off: f64) -> Definition {
+    let step = off * random.direction();
+    match definition {
+        Definition::NurbsCurve(curve) => {
+            let mut points = curve.control_points().to_vec();
+            let k = random.count(0, points.len() - 1);
+            points[k] += step;
+            let knots = curve.knots().as_slice().to_vec();
+            NurbsCurve::new(curve.degree(), knots, points, curve.weights().map(<[f64]>::to_vec)).expect("valid").into()
+        }
+        Definition::NurbsSurface(surface) => {
+            let mut points = surface.control_points().to_vec();
+            let k = random.count(0, points.len() - 1);
+            points[k] += step;
+            let columns = surface.columns();
+            let knots = [Direction::U, Direction::V].map(|d| surface.knots(d).as_slice().to_vec());
+            let [u, v] = knots;
+            let rows = points.chunks(columns).map(<[DVec3]>::to_vec).collect();
+            let weights = surface.weights().map(|w| w.chunks(columns).map(<[f64]>::to_vec).collect());
+            NurbsSurface::new(surface.degree(), (u, v), rows, weights).expect("valid").into()
         }
     }
 }

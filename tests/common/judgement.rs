@@ -62,6 +62,7 @@ pub enum Fault {
 }
 
 /// An answer, seen from outside.
+#[derive(Debug)]
 pub struct Judged {
     pub fault: Option<Fault>,
     pub certified: bool,

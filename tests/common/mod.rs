@@ -10,6 +10,7 @@ pub mod double_double;
 pub mod exact;
 pub mod judgement;
 pub mod kinds;
+pub mod known;
 pub mod oracle;
 pub mod points;
 pub mod random;

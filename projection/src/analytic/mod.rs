@@ -127,6 +127,11 @@ impl Analytic {
         })
     }
 
+    /// Whether the shape is an ellipse or an arc of one, whose parameter is not known as exactly as its points.
+    pub(crate) fn is_elliptic(&self) -> bool {
+        matches!(&self.shape, Shape::Planar(planar) if planar.is_elliptic())
+    }
+
     /// The foot that the shape proposes; none where it declines.
     pub(crate) fn propose(&self, query: &Query, workspace: &mut Workspace, done: &mut Work) -> Option<Proposal> {
         let q = self.axes.enter(query.point);

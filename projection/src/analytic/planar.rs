@@ -76,6 +76,10 @@ impl Planar {
         Some(Built { shape, axes, deviation: 0.0, radius: local.0.max(local.1) })
     }
 
+    pub(super) fn is_elliptic(&self) -> bool {
+        matches!(self.profile, Profile::EllipticArc(_))
+    }
+
     pub(super) fn foot(&self, q: DVec3, asked: Asked, search: &mut Search<'_>) -> Option<Foot> {
         self.profile.foot(q.truncate(), q.z * q.z, asked, search)
     }
