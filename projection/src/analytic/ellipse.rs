@@ -170,8 +170,8 @@ impl EllipticArc {
         let at = DVec2::new(self.radii.0 * pair.x, self.radii.1 * pair.y);
         let turned = from_middle(self.middle, self.ascending, pair);
         let (first, last) = self.inverse.domain();
-        let parameter =
-            self.inverse.parameter(turned.x, turned.y, (asked.tolerance() / self.radii.0.min(self.radii.1)).min(1e-9));
+        let speed = DVec2::new(self.radii.0 * pair.y, self.radii.1 * pair.x).length();
+        let parameter = self.inverse.parameter(turned.x, turned.y, (asked.tolerance() / speed).min(1e-9));
         Candidate {
             parameter: if self.full && parameter == last { first } else { parameter },
             at,
@@ -206,7 +206,14 @@ impl EllipticArc {
                 return (DVec2::X, 0.0);
             }
         }
-        let mut s = ky.max(x.hypot(ky) - focal);
+        let mut s = ky.max((x * x + ky * ky).sqrt() - focal);
+        if ky < 1e-2 {
+            // s² (s + c² - x) >= (k y)² c² / 2, since 1 - cos² has the factors s + c² ± x: beside the axis, near the cusp of the evolute, all
+            // other bounds are far below the root
+            let (product, beyond) = (0.5 * ky * ky * focal, focal - x);
+            let narrow = if beyond > 0.0 { (0.5 * product / beyond).sqrt() } else { f64::INFINITY };
+            s = s.max((0.5 * product).cbrt().min(narrow));
+        }
         for _ in 0..32 {
             let (cos, sin) = (x / (s + focal), ky / s);
             let square = cos * cos + sin * sin;

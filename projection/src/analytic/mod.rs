@@ -142,7 +142,8 @@ impl Analytic {
         let rounding = 34.0 * ROUNDING * reach + self.rounding;
         let gap = self.axes.local(query.options.gap.unwrap_or(DEFAULT_GAP * self.size));
         let coincidence = self.axes.local(query.options.coincidence.unwrap_or(1e-6 * self.size));
-        let noise = 2.0 * ROUNDING * self.axes.local(query.point.abs().max_element() + self.axes.reach());
+        // the centre itself is known to an ulp of the size at best
+        let noise = 2.0 * ROUNDING * (1.0 + self.axes.local(query.point.abs().max_element() + self.axes.reach()));
         let asked = Asked { gap: gap.max(rounding), coincidence, noise, reach };
         let mut search =
             Search { workspace, done, budget: query.options.work, gap: 0.9 * gap - 2.0 * (self.deviation + rounding) };

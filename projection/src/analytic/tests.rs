@@ -9,8 +9,13 @@ use perpend_kernel::{
     Torus, extrusion, revolution,
 };
 
-use crate::hierarchy::double_double::Random;
-use crate::{FootPoint, Method, Prepared, Query, QueryOptions, Scratch};
+use perpend_knowledge::Kind;
+
+use crate::analytic::Analytic;
+use crate::hierarchy::Workspace;
+use crate::hierarchy::double_double::{DoubleDouble, Random};
+use crate::statistics::Work;
+use crate::{FootPoint, Method, Multiplicity, Parameter, Place, Prepared, Query, QueryOptions, Scratch};
 
 const CLASSES: [&str; 12] = [
     "line",
@@ -220,4 +225,300 @@ fn closed_forms_and_the_certified_solver_agree() {
         let least = if class.ends_with("extrusion") { asked * 3 / 4 } else { asked };
         assert!(answered >= least, "{class}: {answered} of {asked} queries");
     }
+}
+
+fn prepared(definition: impl Into<Definition>) -> Prepared {
+    let prepared = Prepared::new(Arc::new(definition.into()), None);
+    assert_eq!(prepared.plan().method, Method::Analytic, "{:?}", prepared.plan().reasons);
+    prepared
+}
+
+fn foot(prepared: &Prepared, p: DVec3) -> FootPoint {
+    let foot = ask(prepared, p, Method::Analytic, &mut Scratch::default());
+    assert_eq!(foot.method, Method::Analytic);
+    foot
+}
+
+fn circle(sweep: (f64, f64)) -> NurbsCurve {
+    Circle::new(Frame::WORLD, 2.0, sweep).expect("valid").to_nurbs().expect("valid")
+}
+
+#[test]
+fn centres_axes_and_spines_tie_all_around_and_the_lowest_parameters_are_given() {
+    let whole = (0.0, TAU);
+    let continuum = |definition: Definition, p: DVec3, distance: f64| {
+        let foot = foot(&prepared(definition), p);
+        assert_eq!(foot.multiplicity, Multiplicity::Continuum, "{foot:?}");
+        assert!((foot.distance - distance).abs() < 1e-14, "{foot:?}");
+        (foot.parameter.u(), foot.parameter.v())
+    };
+    assert_eq!(continuum(circle(whole).into(), DVec3::ZERO, 2.0), (0.0, None));
+    assert_eq!(continuum(circle((0.3, 1.0)).into(), 3.0 * DVec3::Z, 13.0_f64.sqrt()).1, None);
+    let cylinder = Cylinder::new(Frame::WORLD, 2.0, (0.0, 4.0), whole).expect("valid").to_nurbs().expect("valid");
+    assert_eq!(continuum(cylinder.into(), DVec3::Z, 2.0), (0.25, Some(0.0)));
+    let sphere = Sphere::whole(Frame::WORLD, 2.0).expect("valid").to_nurbs().expect("valid");
+    assert_eq!(continuum(sphere.into(), DVec3::ZERO, 2.0), (0.0, Some(0.0)));
+    let torus = Torus::whole(Frame::WORLD, 3.0, 1.0).expect("valid").to_nurbs().expect("valid");
+    assert_eq!(continuum(torus.clone().into(), DVec3::ZERO, 2.0).1, Some(0.0));
+    let on_spine = continuum(torus.into(), DVec3::new(0.0, 3.0, 0.0), 1.0);
+    assert!(on_spine.0 == 0.0 || on_spine.1 == Some(0.0), "{on_spine:?}");
+}
+
+#[test]
+fn ends_that_are_equally_near_tie_and_the_lower_parameter_is_given() {
+    let half = prepared(circle((-FRAC_PI_2, FRAC_PI_2)));
+    let (first, last) = (foot(&half, DVec3::new(-1.0, 0.0, 0.5)), foot(&half, DVec3::new(-1.0, 1e-3, 0.5)));
+    assert_eq!(
+        (first.multiplicity, first.place, first.parameter),
+        (Multiplicity::Tied, Place::End, Parameter::Curve(0.0))
+    );
+    assert_eq!(
+        (last.multiplicity, last.place, last.parameter),
+        (Multiplicity::Unique, Place::End, Parameter::Curve(1.0))
+    );
+    // beside the centre of more than half a turn, the ray of the foot and the far end
+    let most = prepared(circle((-3.0, 3.0)));
+    let foot_beside = foot(&most, DVec3::new(-1e-10, 1e-12, 0.0));
+    assert_eq!(foot_beside.multiplicity, Multiplicity::Continuum);
+    let ellipse = Ellipse::whole(Frame::WORLD, (2.0, 1.0)).expect("valid").to_nurbs().expect("valid");
+    let between = foot(&prepared(ellipse), DVec3::new(0.5, 0.0, 0.0));
+    assert_eq!(between.multiplicity, Multiplicity::Tied);
+    assert!(between.point.y > 0.0, "of both sides, the upper one has the lower parameter: {between:?}");
+}
+
+#[test]
+fn feet_at_ends_edges_corners_seams_and_the_apex_have_exactly_their_parameters() {
+    let place = |prepared: &Prepared, p: DVec3| {
+        let foot = foot(prepared, p);
+        (foot.place, foot.parameter)
+    };
+    let arc = prepared(circle((0.1, 1.3)));
+    let end = |angle: f64, radius: f64| DVec3::new(radius * angle.cos(), radius * angle.sin(), 0.0);
+    for radius in [1e-3, 0.7, 2.0, 5.0, 1e6] {
+        assert_eq!(place(&arc, end(0.1, radius)), (Place::End, Parameter::Curve(0.0)), "{radius}");
+        assert_eq!(place(&arc, end(1.3, radius)), (Place::End, Parameter::Curve(1.0)), "{radius}");
+        assert_eq!(place(&arc, end(0.1 - 1e-9, radius)).0, Place::End);
+        assert_eq!(place(&arc, end(0.1 + 1e-9, radius)).0, Place::Interior);
+    }
+    let whole = prepared(circle((0.1, 0.1 + TAU)));
+    assert_eq!(place(&whole, end(0.1, 1.0)), (Place::Seam, Parameter::Curve(0.0)));
+    let cone = Cone::new(Frame::WORLD, (1.0, 0.0), (0.0, 2.0), (0.0, TAU)).expect("valid").to_nurbs().expect("valid");
+    let cone = prepared(cone);
+    assert_eq!(place(&cone, DVec3::new(0.3, 0.1, 4.0)).0, Place::Pole);
+    assert_eq!(place(&cone, DVec3::new(5.0, 0.5, -3.0)).0, Place::Edge);
+    let rectangle = Plane::new(Frame::WORLD, (0.0, 2.0), (0.0, 1.0)).expect("valid").to_nurbs().expect("valid");
+    assert_eq!(place(&prepared(rectangle), DVec3::new(3.0, -1.0, 1.0)), (Place::Corner, Parameter::Surface(1.0, 0.0)));
+}
+
+#[test]
+fn two_arcs_of_one_circle_give_the_same_foot() {
+    let arcs = [90.0_f64, 120.0].map(|degrees| prepared(circle((0.0, degrees.to_radians()))));
+    let mut random = Random(19);
+    for _ in 0..500 {
+        let (angle, radius) = (random.between(0.0, FRAC_PI_2), 10.0_f64.powf(random.between(-3.0, 3.0)));
+        let p = DVec3::new(radius * angle.cos(), radius * angle.sin(), random.between(-3.0, 3.0));
+        let [a, b] = arcs.each_ref().map(|arc| foot(arc, p));
+        let off = a.point.distance(b.point).max((a.distance - b.distance).abs());
+        assert!(off <= 8.0 * f64::EPSILON * (2.0 + p.length()), "{p}: {a:?} {b:?}");
+    }
+}
+
+/// Points at a planted foot, straight above it.
+#[test]
+fn planted_feet_are_found_to_a_few_ulps() {
+    let mut random = Random(23);
+    for class in ["rectangle", "parallelogram", "cylinder", "cone", "sphere", "torus"] {
+        for round in 0..60 {
+            let mut definition = shape(&mut random, class, 1.0, 1.0);
+            if round % 2 == 1 {
+                definition = disguised(&mut random, definition);
+            }
+            let prepared = prepared(definition.clone());
+            let Definition::NurbsSurface(surface) = &definition else { panic!("{class} is a curve") };
+            for _ in 0..10 {
+                let share = |(a, b): (f64, f64), t: f64| (1.0 - t) * a + t * b;
+                let u = share(surface.domain(Direction::U), random.between(0.01, 0.99));
+                let v = share(surface.domain(Direction::V), random.between(0.01, 0.99));
+                let (at, normal) = (surface.point(u, v), surface.normal(u, v));
+                let Some(normal) = normal.try_normalize() else { continue };
+                // nowhere near a focus: radii are at least 0.06
+                let p = at + random.between(-0.01, 0.01) * normal;
+                let foot = foot(&prepared, p);
+                let ulp = f64::EPSILON * (definition.reach() + p.abs().max_element());
+                assert!(foot.point.distance(at) <= 32.0 * ulp, "{class}: {p} {foot:?} of {definition:?}");
+            }
+        }
+    }
+}
+
+#[test]
+fn sizes_from_the_least_to_the_greatest_have_the_same_feet() {
+    let mut random = Random(29);
+    for class in CLASSES {
+        for scale in [1e-60_f64, 1e60] {
+            // powers of two change no digit
+            let scale = 2.0_f64.powi(scale.log2() as i32);
+            let definition = shape(&mut random, class, 1.0, 1.0);
+            let map = perpend_kernel::glam::DAffine3::from_scale(DVec3::splat(scale));
+            let scaled: Definition = match &definition {
+                Definition::NurbsCurve(curve) => curve.transformed(&map).expect("within limits").into(),
+                Definition::NurbsSurface(surface) => surface.transformed(&map).expect("within limits").into(),
+            };
+            let [plain, other] =
+                [Prepared::new(Arc::new(definition.clone()), None), Prepared::new(Arc::new(scaled), None)];
+            assert_eq!(other.plan().method, plain.plan().method, "{class} at {scale:e}");
+            for _ in 0..20 {
+                let p = query(&mut random, &definition);
+                let [a, b] = [(&plain, p), (&other, scale * p)]
+                    .map(|(prepared, p)| ask(prepared, p, Method::Analytic, &mut Scratch::default()));
+                assert_eq!(a.method, b.method, "{class} at {scale:e}: {p}");
+                let ulp = f64::EPSILON * (definition.reach() + p.abs().max_element());
+                // a search of a profile may stop anywhere within its gap
+                let allowed = if class.starts_with("free") { 1e-9 * definition.size() } else { 256.0 * ulp };
+                assert!((a.distance - b.distance / scale).abs() <= allowed, "{class} at {scale:e}: {a:?} {b:?}");
+            }
+        }
+    }
+}
+
+fn exact(x: f64) -> DoubleDouble {
+    DoubleDouble::from(x)
+}
+
+/// One step of Newton's method from the root of the leading part.
+fn root(x: DoubleDouble) -> DoubleDouble {
+    let leading = x.to_f64().sqrt();
+    if leading == 0.0 {
+        return exact(0.0);
+    }
+    exact(leading) + (x - exact(leading) * exact(leading)) / (2.0 * leading)
+}
+
+fn norm(a: DoubleDouble, b: DoubleDouble) -> DoubleDouble {
+    root(a * a + b * b)
+}
+
+#[test]
+fn bounds_of_whole_shapes_hold_in_double_double_and_are_as_close_as_stated() {
+    let mut random = Random(31);
+    let (mut widest, mut worst) = (0.0_f64, 0.0_f64);
+    for round in 0..4000 {
+        let centre = 10.0_f64.powf(random.between(-2.0, 2.0)) * random.point();
+        let frame = Frame::new(centre, DVec3::Z, DVec3::X).expect("a frame");
+        let (radius, minor) = (random.between(0.5, 2.0), random.between(0.1, 0.4));
+        let far = 10.0_f64.powf(random.between(-16.0, 6.0));
+        let on = match round % 3 {
+            0 => centre,
+            1 => centre + radius * DVec3::new(0.6, -0.8, 0.0),
+            _ => centre + DVec3::new(0.0, 0.0, random.between(-1.0, 1.0)),
+        };
+        let p = on + far * random.point();
+        let [x, y, z] = [0, 1, 2].map(|k| exact(p[k]) - exact(centre[k]));
+        let (axis, xdir, sweep, angular) = (DVec3::Z, DVec3::X, (0.0, TAU), Direction::V);
+        let (definition, kind): (Definition, Kind) = match round % 4 {
+            0 => (
+                Circle::whole(frame, radius).expect("valid").to_nurbs().expect("valid").into(),
+                Kind::Circle { centre, axis, xdir, radius, sweep },
+            ),
+            1 => (
+                Sphere::whole(frame, radius).expect("valid").to_nurbs().expect("valid").into(),
+                Kind::Sphere { centre, axis, xdir, radius, sweep, latitude: (-FRAC_PI_2, FRAC_PI_2), angular },
+            ),
+            2 => (
+                Torus::whole(frame, radius, minor).expect("valid").to_nurbs().expect("valid").into(),
+                Kind::Torus {
+                    centre,
+                    axis,
+                    xdir,
+                    major_radius: radius,
+                    minor_radius: minor,
+                    sweep,
+                    section: sweep,
+                    angular,
+                },
+            ),
+            _ => (
+                Cylinder::new(frame, radius, (-1.0, 1.0), sweep).expect("valid").to_nurbs().expect("valid").into(),
+                Kind::Cylinder { centre, axis, xdir, radius, height: (-1.0, 1.0), sweep, angular },
+            ),
+        };
+        let rho = norm(x, y);
+        let true_distance = match round % 4 {
+            0 => norm(rho - exact(radius), z),
+            1 => norm(rho, z) - exact(radius),
+            2 => norm(rho - exact(radius), z) - exact(minor),
+            _ => {
+                let beyond = if z.to_f64() > 1.0 { z - exact(1.0) } else { exact(0.0) - z - exact(1.0) };
+                norm(rho - exact(radius), if beyond.to_f64() > 0.0 { beyond } else { exact(0.0) })
+            }
+        };
+        let true_distance = true_distance.to_f64().abs();
+        let analytic = Analytic::new(&definition, &kind, 0.0).expect("it has a closed form");
+        let query = Query::new(p, QueryOptions::default()).expect("finite");
+        let proposal =
+            analytic.propose(&query, &mut Workspace::default(), &mut Work::default()).expect("in closed form");
+        let ulp = f64::EPSILON * (centre.abs().max_element() + radius + p.distance(centre));
+        assert!(proposal.lower_bound <= true_distance, "{kind:?} {p}: {proposal:?} {true_distance:e}");
+        let foot = match &definition {
+            Definition::NurbsCurve(curve) => curve.point(proposal.u),
+            Definition::NurbsSurface(surface) => surface.point(proposal.u, proposal.v),
+        };
+        worst = worst.max((foot.distance(p) - true_distance).abs() / ulp);
+        // 34 u of the query's distance, which has an error of its own, 4 ε of the origin's coordinates, and 64 u + 16 ε of the radii and twice the size
+        let bound = 2.0 * (radius + minor) + 2.0 * definition.size();
+        let stated = f64::EPSILON * (20.0 * p.distance(centre) + 4.0 * centre.abs().max_element() + 48.0 * bound);
+        let share = (true_distance - proposal.lower_bound) / stated;
+        assert!(share <= 1.0, "{kind:?} {p}: {proposal:?} {true_distance:e}");
+        widest = widest.max(share);
+    }
+    // control points are rounded, and so is the evaluation of degree (2, 2)
+    assert!(worst <= 6.0, "{worst} ulps");
+    assert!(widest > 0.5, "the stated bound is what is taken off");
+}
+
+/// Queries on the normal of a planted point, on the near side of the larger axis: up to it, across the evolute, and on all sides of it.
+#[test]
+fn ellipses_from_needles_to_near_circles_give_the_planted_distance() {
+    let mut random = Random(37);
+    let mut worst = 0.0_f64;
+    for round in 0..6000 {
+        let flat = match round % 4 {
+            0 => 10.0_f64.powf(random.between(-5.0, 0.0)),
+            1 => 1.0 - 10.0_f64.powf(random.between(-15.0, -1.0)),
+            _ => random.between(0.05, 1.0),
+        };
+        let angle = match round % 5 {
+            0 => 10.0_f64.powf(random.between(-16.0, 0.0)),
+            1 => FRAC_PI_2 - 10.0_f64.powf(random.between(-16.0, 0.0)),
+            _ => random.between(-PI, PI),
+        };
+        let (sin, cos) = angle.sin_cos();
+        // the point is nearest to its normal's points from the larger axis, s = 0, outwards; s = k² is the ellipse
+        let s = match round % 3 {
+            0 => 10.0_f64.powf(random.between(-18.0, 3.0)),
+            1 => flat * flat * (1.0 + random.between(-1.0, 1.0) * 10.0_f64.powf(random.between(-15.0, 0.0))),
+            _ => random.between(0.0, 3.0),
+        };
+        let t = exact(s) - exact(flat) * exact(flat);
+        let (x, y) = ((t + exact(1.0)) * exact(cos), (exact(s) / exact(flat)) * exact(sin));
+        let p = DVec3::new(x.to_f64(), y.to_f64(), 0.0);
+        let (dx, dy) = (t * exact(cos), t * exact(sin) / exact(flat));
+        let planted = norm(dx, dy).to_f64();
+        let (centre, axis, xdir, sweep) = (DVec3::ZERO, DVec3::Z, DVec3::X, (0.0, TAU));
+        let Ok(ellipse) = Ellipse::whole(Frame::WORLD, (1.0, flat)) else { continue };
+        let definition = Definition::from(ellipse.to_nurbs().expect("valid"));
+        let kind = Kind::Ellipse { centre, axis, xdir, radii: (1.0, flat), sweep };
+        let analytic = Analytic::new(&definition, &kind, 0.0).expect("it has a closed form");
+        let query = Query::new(p, QueryOptions::default()).expect("finite");
+        let proposal =
+            analytic.propose(&query, &mut Workspace::default(), &mut Work::default()).expect("in closed form");
+        let Definition::NurbsCurve(curve) = &definition else { panic!("an ellipse is a curve") };
+        let ulp = f64::EPSILON * (1.0 + p.length());
+        let off = (curve.point(proposal.u).distance(p) - planted).abs() / ulp;
+        worst = worst.max(off);
+        assert!(off <= 8.0, "1 by {flat}, angle {angle}, s = {s:e}: {proposal:?}, not {planted:e}");
+        assert!(proposal.lower_bound <= planted + 2.0 * ulp, "1 by {flat}, angle {angle}, s = {s:e}: {proposal:?}");
+        assert!(planted - proposal.lower_bound <= 256.0 * ulp, "1 by {flat}, angle {angle}, s = {s:e}: {proposal:?}");
+    }
+    assert!(worst > 0.0);
 }

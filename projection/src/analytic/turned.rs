@@ -111,9 +111,9 @@ impl Turned {
                 (profile, radius)
             }
         };
-        let reach = shift + middle.abs().max_element() + radius + 2.0;
+        let reach = shift + middle.abs().max_element() + radius;
         let inner = stated.least(&net, shift, frame.scale);
-        let slack = 4.0 * gap * frame.scale + 64.0 * ROUNDING * reach;
+        let slack = 4.0 * gap * frame.scale + 64.0 * ROUNDING * (2.0 + reach);
         let holds = inner >= -slack && deviation <= slack;
         if !holds {
             return None;
@@ -128,7 +128,7 @@ impl Turned {
             (DVec2::new(p.x + shift, p.y) / unit, grid.weight(i, widest))
         });
         let sector = Sector::new(turn, shift, grid.along(), units)?;
-        let shape = Self { sector, profile, angular, pole: 16.0 * ROUNDING * reach };
+        let shape = Self { sector, profile, angular, pole: 16.0 * ROUNDING * (2.0 + reach) };
         Some(Built { shape, axes, deviation: deviation + (-inner).max(0.0), radius: reach })
     }
 

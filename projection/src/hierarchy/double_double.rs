@@ -6,10 +6,10 @@ use glam::DVec3;
 
 /// The unevaluated sum of two numbers, the second at most half an ulp of the first (Dekker 1971).
 #[derive(Debug, Clone, Copy)]
-pub(super) struct DoubleDouble(f64, f64);
+pub(crate) struct DoubleDouble(f64, f64);
 
 impl DoubleDouble {
-    pub(super) fn to_f64(self) -> f64 {
+    pub(crate) fn to_f64(self) -> f64 {
         self.0 + self.1
     }
 
