@@ -1,9 +1,11 @@
-//! The tables of the papers, measured anew: `papers [selimovic]`, all of them without a name.
+//! The tables of the papers, measured anew: `papers [selimovic|piegl]`, all of them without a name; with `--quick`, Piegl's last table is shorter.
 //!
 //! The test corpora are read from `tests/data`, or from the folder that the environment variable `PERPEND_CORPUS` names.
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints its tables")]
 
+#[path = "../papers/piegl/mod.rs"]
+mod piegl;
 #[path = "../papers/selimovic.rs"]
 mod selimovic;
 
@@ -13,10 +15,15 @@ type Failure = Box<dyn std::error::Error>;
 type Print = fn() -> Result<(), Failure>;
 
 /// The papers by their names on the command line.
-const PAPERS: [(&str, Print); 1] = [("selimovic", selimovic::print)];
+const PAPERS: [(&str, Print); 2] = [("selimovic", selimovic::print), ("piegl", piegl::print)];
 
 fn main() -> Result<(), Failure> {
-    let wanted: Vec<String> = std::env::args().skip(1).collect();
+    let wanted: Vec<String> = std::env::args().skip(1).filter(|a| a != "--quick").collect();
+    if let [first, rest @ ..] = wanted.as_slice()
+        && first == "piegl-run"
+    {
+        return piegl::run(rest);
+    }
     if let Some(unknown) = wanted.iter().find(|name| PAPERS.iter().all(|(paper, _)| paper != name)) {
         let known: Vec<&str> = PAPERS.iter().map(|(paper, _)| *paper).collect();
         return Err(format!("no paper is called {unknown}; usage: papers [{}]", known.join("|")).into());

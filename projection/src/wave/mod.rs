@@ -205,11 +205,8 @@ impl Wave {
                         work.evaluations += samples.evaluations;
                         Box::new(samples)
                     });
-                    for (k, point) in samples.points.iter().enumerate() {
-                        let distance_squared = point.distance_squared(query);
-                        if distance_squared < best.distance_squared {
-                            best = Start { parameters: samples.parameters(k), point: *point, distance_squared };
-                        }
+                    if let Some((k, distance_squared)) = samples.nearest(query, best.distance_squared) {
+                        best = Start { parameters: samples.parameters(k), point: samples.points[k], distance_squared };
                     }
                 }
             });

@@ -1,7 +1,7 @@
 //! The second decomposition: the samples of a segment, from which a start for Newton's method is taken (Piegl et al. 2008, §6).
 
 use glam::DVec3;
-use perpend_kernel::{Direction, NurbsCurve, NurbsSurface};
+use perpend_kernel::{Aabb, Direction, NurbsCurve, NurbsSurface};
 
 use super::decompose::{Decomposition, decompose};
 use super::nodes::nodes;
@@ -9,6 +9,9 @@ use super::settings::Steps;
 
 /// The most samples of an entity, all segments together: 100 MB.
 const MOST: usize = 1 << 22;
+
+/// Samples that share a box.
+const RUN: usize = 32;
 
 /// Samples of a segment: a grid of points over parameters in u and in v.
 #[derive(Debug)]
@@ -18,6 +21,8 @@ pub(super) struct Samples {
     pub v: Vec<f64>,
     /// Those along v innermost.
     pub points: Vec<DVec3>,
+    /// The box of each run of points, in order: a run that is too far is passed over.
+    boxes: Vec<Aabb>,
     /// What they cost.
     pub evaluations: u64,
 }
@@ -34,7 +39,7 @@ impl Samples {
     pub(super) fn of_curve(curve: &NurbsCurve, range: (f64, f64), (steps, most): (Steps, usize)) -> Self {
         let Decomposition { parameters, points, evaluations, length_evaluations } =
             decompose(|u| curve.point(u), &nodes(curve.knots(), range), &[], steps, most);
-        Self { u: parameters, v: vec![0.0], points, evaluations: evaluations + length_evaluations }
+        Self::new(parameters, vec![0.0], points, evaluations + length_evaluations)
     }
 
     /// Of a patch: the points of its longest iso-curve in each direction (of both edges and the middle) give the parameters of the grid.
@@ -43,7 +48,29 @@ impl Samples {
         let (v, of_v) = along(surface, Direction::V, ranges[1], ranges[0], budget);
         let points: Vec<DVec3> = u.iter().flat_map(|u| v.iter().map(|v| surface.point(*u, *v))).collect();
         let evaluations = of_u + of_v + points.len() as u64;
-        Self { u, v, points, evaluations }
+        Self::new(u, v, points, evaluations)
+    }
+
+    fn new(u: Vec<f64>, v: Vec<f64>, points: Vec<DVec3>, evaluations: u64) -> Self {
+        let boxes = points.chunks(RUN).map(|run| Aabb::around(run.iter().copied())).collect();
+        Self { u, v, points, boxes, evaluations }
+    }
+
+    /// The first of the samples nearest to a query and nearer than `limit_squared`, with the square of its distance.
+    pub(super) fn nearest(&self, query: DVec3, limit_squared: f64) -> Option<(usize, f64)> {
+        let (mut found, mut least) = (None, limit_squared);
+        for (run, bounds) in self.boxes.iter().enumerate() {
+            if bounds.distance_squared(query) >= least {
+                continue;
+            }
+            for (k, point) in self.points.iter().enumerate().skip(RUN * run).take(RUN) {
+                let distance_squared = point.distance_squared(query);
+                if distance_squared < least {
+                    (found, least) = (Some((k, distance_squared)), distance_squared);
+                }
+            }
+        }
+        found
     }
 
     /// The parameters of a sample.
@@ -53,7 +80,9 @@ impl Samples {
 
     /// Bytes on the heap.
     pub(super) fn memory(&self) -> usize {
-        8 * (self.u.capacity() + self.v.capacity()) + size_of::<DVec3>() * self.points.capacity()
+        8 * (self.u.capacity() + self.v.capacity())
+            + size_of::<DVec3>() * self.points.capacity()
+            + size_of::<Aabb>() * self.boxes.capacity()
     }
 }
 
