@@ -1,9 +1,11 @@
-//! The tables of the papers, measured anew: `papers [selimovic|piegl]`, all of them without a name; with `--quick`, Piegl's last table is shorter.
+//! The tables of the papers, measured anew: `papers [selimovic|few|piegl]`, all of them without a name; with `--quick`, Piegl's last table is shorter.
 //!
 //! The test corpora are read from `tests/data`, or from the folder that the environment variable `PERPEND_CORPUS` names.
 
 #![allow(clippy::print_stdout, reason = "a benchmark prints its tables")]
 
+#[path = "../papers/few.rs"]
+mod few;
 #[path = "../papers/piegl/mod.rs"]
 mod piegl;
 #[path = "../papers/selimovic.rs"]
@@ -14,8 +16,8 @@ type Failure = Box<dyn std::error::Error>;
 /// Prints the tables of a paper.
 type Print = fn() -> Result<(), Failure>;
 
-/// The papers by their names on the command line.
-const PAPERS: [(&str, Print); 2] = [("selimovic", selimovic::print), ("piegl", piegl::print)];
+/// The papers by their names on the command line; `few` is a question that Selimovic's raises: is it the choice for a few queries?
+const PAPERS: [(&str, Print); 3] = [("selimovic", selimovic::print), ("few", few::print), ("piegl", piegl::print)];
 
 fn main() -> Result<(), Failure> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| a != "--quick").collect();
