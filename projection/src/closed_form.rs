@@ -3,7 +3,7 @@
 use std::sync::Arc;
 
 use glam::DVec3;
-use perpend_kernel::{Definition, NurbsCurve};
+use perpend_kernel::{Definition, Direction, NurbsCurve, NurbsSurface};
 
 use crate::analytic::{Analytic, Proposal};
 use crate::answer::Method;
@@ -14,6 +14,9 @@ use crate::solver::{Solution, Solved, Solver, unit_normal};
 /// What rounding may leave between a distance and its bound beside the gap, in ulps of the largest coordinate in play: what an answer
 /// calls certified.
 const ROUNDING: f64 = 32.0 * f64::EPSILON;
+
+/// Nearer to the border of the domain than this share of it, a foot may be on it but for rounding.
+const NEAR_BORDER: f64 = 1e-6;
 
 /// The closed form of a definition whose class is known and proved.
 #[derive(Debug)]
@@ -32,7 +35,7 @@ impl ClosedForm {
 
     /// The definition at a proposal's parameters, seen from the query.
     fn evaluate(&self, query: &Query, proposal: &Proposal) -> Solution {
-        let &Proposal { mut u, v, lower_bound, tie } = proposal;
+        let &Proposal { mut u, mut v, lower_bound, tie } = proposal;
         let (point, normal) = match &*self.definition {
             Definition::NurbsCurve(curve) if self.analytic.is_elliptic() => {
                 let point;
@@ -41,6 +44,7 @@ impl ClosedForm {
             }
             Definition::NurbsCurve(curve) => (curve.point(u), DVec3::ZERO),
             Definition::NurbsSurface(surface) => {
+                (u, v) = self.on_border(surface, u, v);
                 let mut d = [DVec3::ZERO; 4];
                 surface.derivatives(u, v, 1, &mut d);
                 (d[0], unit_normal(d[2], d[1]))
@@ -58,6 +62,28 @@ impl ClosedForm {
             offset,
             tie,
         }
+    }
+}
+
+impl ClosedForm {
+    /// The parameters on the border of the domain where they lie beside it by no more than rounding of the model's coordinates: a foot beside a
+    /// pole or an edge is told from one on it by less than that.
+    fn on_border(&self, surface: &NurbsSurface, u: f64, v: f64) -> (f64, f64) {
+        let border = |x: f64, along: Direction| {
+            let (first, last) = surface.domain(along);
+            let near = NEAR_BORDER * (last - first);
+            match x {
+                x if x - first < near => first,
+                x if last - x < near => last,
+                x => x,
+            }
+        };
+        let there = (border(u, Direction::U), border(v, Direction::V));
+        if there == (u, v) {
+            return there;
+        }
+        let moved = surface.point(u, v).distance(surface.point(there.0, there.1));
+        if moved <= 4.0 * f64::EPSILON * self.reach { there } else { (u, v) }
     }
 }
 

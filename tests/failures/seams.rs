@@ -18,7 +18,10 @@ fn one_answer(case: &Case, p: DVec3, distance: f64, lower: [Option<f64>; 2]) {
     }
     let ties = case.ties(p);
     assert_eq!((ties.points.len(), ties.continua.len(), ties.complete), (1, 0, true), "{p}: {ties:?}");
-    assert_eq!(ties.points[0].parameter, foot.parameter);
+    // the search for ties is the hierarchy's, the foot may be a closed form's: parameters differ by rounding
+    let tie = ties.points[0].parameter;
+    close(tie.u(), foot.parameter.u(), 1e-14);
+    close(tie.v().unwrap_or(0.0), foot.parameter.v().unwrap_or(0.0), 1e-14);
 }
 
 /// Salome geom #12, #22: a point beside the seam vertex of a circle had "multiple solutions", the two ends of the domain.
