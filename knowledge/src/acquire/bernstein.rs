@@ -3,7 +3,9 @@
 //! A polynomial in one parameter has degree 0 in the second. All operations are convex combinations of coefficients, or
 //! products of them: they lose a few `degree * ε` of the largest coefficient, nothing more.
 
+use std::borrow::Cow;
 use std::ops::{Add, Mul};
+use std::sync::OnceLock;
 
 use glam::{DVec3, DVec4};
 
@@ -144,8 +146,17 @@ pub(crate) fn hodograph(form: &Form<DVec3>) -> Form<DVec3> {
     Form { degree: (p - 1, form.degree.1), coefficients }
 }
 
+/// The highest degree whose binomial coefficients are kept: more than a product of four derivatives of the highest degree has.
+const KEPT: usize = 256;
+
 /// The row of binomial coefficients, to a few `n ε`.
-fn binomials(n: usize) -> Vec<f64> {
+fn binomials(n: usize) -> Cow<'static, [f64]> {
+    static ROWS: OnceLock<Vec<Vec<f64>>> = OnceLock::new();
+    let rows = ROWS.get_or_init(|| (0..=KEPT).map(row).collect());
+    rows.get(n).map_or_else(|| Cow::Owned(row(n)), |row| Cow::Borrowed(row.as_slice()))
+}
+
+fn row(n: usize) -> Vec<f64> {
     let mut row = vec![1.0; n + 1];
     for i in 1..=n {
         row[i] = row[i - 1] * (n + 1 - i) as f64 / i as f64;

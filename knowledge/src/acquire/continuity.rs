@@ -12,11 +12,11 @@ use super::jets::{Jet, differences, extent, reciprocal};
 use super::near::Near;
 use super::source::Piece;
 
-/// Points along each piece of a line of knots at which angles are measured.
+/// Points along each piece of a line of knots at which angles are measured, at most.
 const SAMPLES: usize = 9;
 
 /// Halvings of a piece along the line of knots, for bounds.
-const HALVINGS: u32 = 4;
+const HALVINGS: u32 = 2;
 
 /// How a definition goes on over a line of knots.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -172,7 +172,7 @@ fn turn(jets: &[[Jet; 2]]) -> Turn {
             (turn.is_proven, turn.error) = (false, 1e-3);
             continue;
         }
-        let samples = if before.along.is_some() { SAMPLES } else { 1 };
+        let samples = if before.along.is_some() { SAMPLES.min(2 * before.points[0].form.degree.0 + 1) } else { 1 };
         for k in 0..samples {
             let t = if samples == 1 { 0.0 } else { k as f64 / (samples - 1) as f64 };
             let (a, b) = ((a.form.at(t), a.error), (b.form.at(t), b.error));

@@ -31,6 +31,7 @@ pub(crate) use measure::enclosure;
 pub use options::AcquireOptions;
 
 use crate::category::Categories;
+use crate::finite;
 use crate::item::{Basis, Item};
 use crate::representation::{Break, Irregularity, ParameterPoint, Representation, SpanSpeed, Speed};
 use found::proved;
@@ -78,7 +79,8 @@ pub fn acquire(definition: &Definition, options: &AcquireOptions) -> Representat
         irregularities.push(proved(value, pole.extent, same));
     }
     for (joints, closure) in joints.iter().zip(&mut closed) {
-        breaks.extend(joints.breaks.iter().map(|found| item(found, of)));
+        let sound = joints.breaks.iter().filter(|(value, ..)| finite::check(value).is_ok());
+        breaks.extend(sound.map(|found| item(found, of)));
         irregularities.extend(joints.irregularities.iter().copied());
         *closure = Closure { gap: joints.gap, is_closed: joints.is_closed, is_periodic: joints.is_periodic };
     }
@@ -111,15 +113,17 @@ pub fn acquire(definition: &Definition, options: &AcquireOptions) -> Representat
             let loops = loops::loops(curve, source, same);
             irregularities.extend(loops.into_iter().map(|value| proved(value, loss, same)));
             let (value, gap) = measure::length(curve, source);
-            part.length = Some(item(&(value, Basis::Proved { gap }, gap), of));
+            part.length = Some(item(&(limited(value), Basis::Proved { gap }, gap), of));
         }
         Definition::NurbsSurface(surface) => {
             irregularities.extend(stops::of(surface, &sources, &ranges, &poles, options));
             irregularities.extend(normals::irregular(surface, &sources[0].1, &poles, options));
             let (value, error) = measure::area(surface);
-            part.area = Some(item(&(value, Basis::Measured { error }, error), of));
+            part.area = Some(item(&(limited(value), Basis::Measured { error }, error), of));
         }
     }
+    // what overflowed, of extreme weights, tells nothing
+    irregularities.retain(|(value, ..)| finite::check(value).is_ok());
     part.irregularities = Some(irregularities.iter().map(|found| item(found, of)).collect());
     part
 }
@@ -144,15 +148,15 @@ struct Closure {
 
 fn item<T: Clone>((value, basis, tolerance): &(T, Basis, f64), of: Fingerprint) -> Item<T> {
     let basis = match *basis {
-        Basis::Proved { gap } => Basis::Proved { gap: finite(gap) },
-        Basis::Measured { error } => Basis::Measured { error: finite(error) },
+        Basis::Proved { gap } => Basis::Proved { gap: limited(gap) },
+        Basis::Measured { error } => Basis::Measured { error: limited(error) },
         other => other,
     };
-    Item { value: value.clone(), basis, tolerance: finite(*tolerance), of }
+    Item { value: value.clone(), basis, tolerance: limited(*tolerance), of }
 }
 
 /// Numbers of a record are finite; a bound of extreme data may overflow.
-fn finite(x: f64) -> f64 {
+fn limited(x: f64) -> f64 {
     if x.is_nan() { f64::MAX } else { x.clamp(f64::MIN, f64::MAX) }
 }
 
@@ -184,7 +188,7 @@ fn speeds(
     categories: &Categories,
 ) -> Item<Speed> {
     let span = |range: &speed::Range| {
-        let (min, max) = (finite(range.least.bound), finite(range.greatest.bound));
+        let (min, max) = (limited(range.least.bound), limited(range.greatest.bound));
         SpanSpeed { from: range.from, to: range.to, min, max, factor: factor(min, max) }
     };
     let spans: Vec<SpanSpeed> = ranges.iter().map(span).collect();

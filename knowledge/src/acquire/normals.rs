@@ -20,7 +20,7 @@ use crate::representation::{Irregularity, ParameterPoint};
 const DEEPEST: u32 = 16;
 
 /// Places that are listed.
-const LISTED: usize = 64;
+const LISTED: usize = 32;
 
 /// Directions around a place in which normals are compared.
 const AROUND: usize = 16;
@@ -144,6 +144,9 @@ impl Search<'_> {
             } else {
                 break;
             };
+            if !(x.is_finite() && y.is_finite()) {
+                break; // derivatives of extreme weights overflow
+            }
             (u, v) = ((u - x).clamp(u0, u1), (v - y).clamp(v0, v1));
         }
         let near =

@@ -32,7 +32,7 @@ impl Default for AcquireOptions {
             vanishing: 1e-9,
             near_knots: 1e-6,
             tiny_span: 1e-6,
-            work: 1_000_000_000,
+            work: 200_000_000,
         }
     }
 }
