@@ -56,6 +56,10 @@ impl Extruded {
         let half = 0.5 * axes.local(vector.length());
         let range = range(half, &grid, n, &axes)?;
         let (profile, deviation, radius) = Profile::of(&net)?;
+        // a search that most queries far away repeat on the surface does not pay
+        if !flat && matches!(profile, Profile::Curve(_)) {
+            return None;
+        }
         let oblique = if flat {
             None
         } else {

@@ -183,7 +183,8 @@ fn quadratic(f: f64, m: f64, l: f64) -> f64 {
     if share.is_finite() { share } else { 0.5 }
 }
 
-/// A root in `[0, 1]` of a Bernstein form that begins below 0 and ends above, from a start: Halley's method, kept inside the bracket.
+/// A root in `[0, 1]` of a Bernstein form that begins below 0 and ends above, from a start: Chebyshev's method, Newton's with the bend of
+/// the form, kept inside the bracket.
 fn root<const R: usize>(form: impl Iterator<Item = f64>, p: usize, start: f64) -> f64 {
     let mut coefficients = [0.0; R];
     coefficients.iter_mut().zip(form).for_each(|(c, f)| *c = f);
@@ -204,10 +205,11 @@ fn root<const R: usize>(form: impl Iterator<Item = f64>, p: usize, start: f64) -
         } else {
             high = t;
         }
-        let newton = value / slope;
+        let inverse = 1.0 / slope;
+        let newton = value * inverse;
         // how much the slope changes over half of Newton's step, as a share of it
-        let turned = 0.5 * (p * (p - 1)) as f64 * bend * newton / slope;
-        let next = t - newton / (1.0 - turned);
+        let turned = 0.5 * (p * (p - 1)) as f64 * bend * newton * inverse;
+        let next = t - newton * (1.0 + turned);
         // not outside, and not where a slope of 0 leads
         let inside = next >= low && next <= high;
         let next = if inside { next } else { 0.5 * (low + high) };
