@@ -2,8 +2,8 @@
 
 use std::sync::{Arc, OnceLock};
 
-use perpend_kernel::{EntityId, InvalidDefinition};
-use perpend_knowledge::{NonFinite, Record};
+use perpend_kernel::{EntityId, InvalidDefinition, InvalidEdit};
+use perpend_knowledge::{InvalidTolerance, NonFinite, Record};
 
 use crate::enter::IntoDefinition;
 use crate::entity::Entity;
@@ -61,6 +61,34 @@ pub enum EditError {
         /// The field that holds the reference.
         field: String,
     },
+    /// The tolerance of a consent is no length above 0.
+    #[error("entity {id}: {source}")]
+    Tolerance {
+        /// The entity to be purged.
+        id: EntityId,
+        /// The tolerance.
+        source: InvalidTolerance,
+    },
+    /// Curves alone are taken apart.
+    #[error("entity {id} is a surface; curves are taken apart: choose one")]
+    NotACurve {
+        /// The entity.
+        id: EntityId,
+    },
+    /// A curve could not be taken apart.
+    #[error("entity {id}: {source}")]
+    Decompose {
+        /// The curve.
+        id: EntityId,
+        /// Why not.
+        source: InvalidEdit,
+    },
+    /// No original is kept of the entity.
+    #[error("entity {id} has no original: it was not purged, or its original was dropped")]
+    NoOriginal {
+        /// The entity.
+        id: EntityId,
+    },
 }
 
 impl Model {
@@ -95,6 +123,8 @@ impl Model {
     /// only those who stated them can say whether they still hold. So an entity that an operation had made is *overridden*: it
     /// keeps the definition that it was given here when its inputs change, until it is [rebuilt](Self::rebuild),
     /// [remade](Self::remake) or replaced by an analytic shape, whose own operation then is what makes it.
+    ///
+    /// The original of an entity that was purged goes with the definition that was made of it.
     ///
     /// # Errors
     ///
@@ -180,7 +210,7 @@ impl Model {
         self.index.get(&id).copied().ok_or(EditError::UnknownEntity { id })
     }
 
-    fn edited(&mut self, at: usize) {
+    pub(crate) fn edited(&mut self, at: usize) {
         let record = self.entities[at].record.get_or_insert_default();
         record.revision = record.revision.saturating_add(1);
         self.overview = OnceLock::new();

@@ -8,6 +8,7 @@ use perpend_projection::Prepared;
 use serde::{Deserialize, Serialize};
 
 use crate::enter::IntoDefinition;
+use crate::original::{Original, OriginalData};
 use crate::trust::{FIELD, False, Trust};
 use crate::written::{Writing, Written};
 
@@ -22,6 +23,7 @@ pub struct Entity {
     pub(crate) name: String,
     pub(crate) definition: Arc<Definition>,
     pub(crate) record: Option<Record>,
+    pub(crate) original: Option<Original>,
     pub(crate) prepared: OnceLock<Arc<Prepared>>,
 }
 
@@ -35,6 +37,8 @@ pub(crate) struct EntityData {
     pub(crate) definition: Written,
     #[serde(default)]
     pub(crate) knowledge: Option<Record>,
+    #[serde(default)]
+    pub(crate) original: Option<OriginalData>,
 }
 
 /// Why an entity is refused.
@@ -53,6 +57,29 @@ pub enum EntityError {
     /// Its record states something else that its definition contradicts.
     #[error("knowledge: {0}")]
     FalseItem(#[from] Contradiction),
+    /// Its original breaks a rule itself.
+    #[error("original: {0}")]
+    Original(Box<EntityError>),
+    /// Its original's record holds parts that are the entity's own.
+    #[error(
+        "original: knowledge holds classification.kind and representation alone: move the other parts to the entity's own knowledge"
+    )]
+    OriginalStates,
+    /// Its original is no entity of which it could have been purged.
+    #[error(
+        "original: it is of another kind or over another domain than the definition, so nothing was purged from it: remove it"
+    )]
+    OtherOriginal,
+    /// Its record states a deviation from the original that is less than what can be proved.
+    #[error(
+        "knowledge: representation.cleaning: the definition is proven within {proven:e} of the original, and {stated:e} is stated: correct the gap"
+    )]
+    FalseDeviation {
+        /// What the record states.
+        stated: f64,
+        /// What is proven.
+        proven: f64,
+    },
 }
 
 impl From<False> for EntityError {
@@ -66,7 +93,7 @@ impl From<False> for EntityError {
 
 impl Entity {
     pub(crate) fn new(id: EntityId, name: String, definition: Definition, record: Option<Record>) -> Self {
-        Self { id, name, definition: Arc::new(definition), record, prepared: OnceLock::new() }
+        Self { id, name, definition: Arc::new(definition), record, original: None, prepared: OnceLock::new() }
     }
 
     /// The id by which the model's queries call it.
@@ -93,6 +120,12 @@ impl Entity {
         self.record.as_ref()
     }
 
+    /// What it was before it was purged, if it was and that is kept.
+    #[must_use]
+    pub fn original(&self) -> Option<&Original> {
+        self.original.as_ref()
+    }
+
     /// How often it was edited, as far as its record says.
     #[must_use]
     pub fn revision(&self) -> u64 {
@@ -116,8 +149,8 @@ impl Entity {
 
 impl PartialEq for Entity {
     fn eq(&self, other: &Self) -> bool {
-        (self.id, &self.name, &self.definition, &self.record)
-            == (other.id, &other.name, &other.definition, &other.record)
+        (self.id, &self.name, &self.definition, &self.record, &self.original)
+            == (other.id, &other.name, &other.definition, &other.record, &other.original)
     }
 }
 
@@ -138,19 +171,27 @@ impl Entity {
             record.validate()?;
         }
         trust.settle(&mut record, &entered.definition)?;
+        let original = data
+            .original
+            .map(|original| Original::settled(original, trust, &entered.definition, &mut record))
+            .transpose()?;
         entered.note(&mut record);
-        Ok(Self::new(data.id, data.name, entered.definition, record))
+        Ok(Self { original, ..Self::new(data.id, data.name, entered.definition, record) })
     }
 }
 
 impl Serialize for Entity {
     fn serialize<S: serde::Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
         use serde::ser::SerializeStruct;
-        let mut s = serializer.serialize_struct("Entity", 4)?;
+        let mut s = serializer.serialize_struct("Entity", 5)?;
         s.serialize_field("id", &self.id)?;
         s.serialize_field("name", &self.name)?;
         s.serialize_field("definition", &Writing(&self.definition))?;
         s.serialize_field("knowledge", &self.record)?;
+        match &self.original {
+            Some(original) => s.serialize_field("original", &Some(original))?,
+            None => s.skip_field("original")?,
+        }
         s.end()
     }
 }

@@ -23,6 +23,7 @@
 //! `f64`.
 
 mod batch;
+mod decompose;
 mod dependence;
 mod edit;
 mod enter;
@@ -34,6 +35,8 @@ mod learn;
 mod make;
 mod model;
 mod nearest;
+mod original;
+mod prepare;
 mod projector;
 mod query;
 mod rebuild;
@@ -51,6 +54,8 @@ pub use file::{AtomicFile, InvalidModel, ModelError, ReadError, WriteError};
 pub use impact::{Effect, Impact};
 pub use make::MakeError;
 pub use model::Model;
+pub use original::Original;
+pub use prepare::{Consent, Preparation};
 pub use projector::Projector;
 pub use rebuild::RebuildError;
 pub use replay::{Replay, ReplayError};
@@ -83,3 +88,8 @@ struct Readme;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/guide.md")]
 struct Guide;
+
+/// The program of the page on preparation, run as a test.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/preparation.md")]
+struct PreparationPage;

@@ -317,6 +317,8 @@ impl Model {
             let entity = &mut self.entities[self.index[&id]];
             if definition != entity.definition {
                 hashes.insert(id, definition.fingerprint());
+                // it was the original of a definition that is no more
+                entity.original = None;
             }
             entity.definition = definition;
             entity.record = record;

@@ -1,7 +1,9 @@
 //! Knowledge of a file that is false is found on loading, named, and refused or acquired again.
 
 use perpend::kernel::glam::DVec3;
-use perpend::{Basis, Circle, Cylinder, EntityId, Frame, InvalidModel, Kind, Model, NurbsCurve, Sphere, Trust};
+use perpend::{
+    Basis, Circle, Cylinder, EntityError, EntityId, Frame, InvalidModel, Kind, Model, NurbsCurve, Sphere, Trust,
+};
 
 fn kind(model: &Model) -> &Kind {
     let record = model.entities()[0].record().expect("a record");
@@ -114,7 +116,7 @@ fn items_that_the_definition_contradicts_are_named_with_their_deviation() {
         assert_ne!(lie, text, "{what}");
         let error = Model::from_ron(&lie).expect_err(what);
         assert_eq!(error.entity, Some(EntityId::new(id)), "{what}: {error}");
-        let InvalidModel::FalseItem(found) = &error.problem else { panic!("{what}: {error}") };
+        let InvalidModel::Entity(EntityError::FalseItem(found)) = &error.problem else { panic!("{what}: {error}") };
         assert_eq!(found.field, field, "{what}: {error}");
         assert!(error.to_string().contains("--repair"), "{error}");
         if let Some(deviation) = deviation {
@@ -141,7 +143,7 @@ fn a_loop_or_a_seam_that_is_none_is_false() {
         let item = format!("(value: {stated}, basis: Declared, tolerance: 0.0, of: \"{}\"), ", of(id));
         let lie = format!("{}{item}{}", &text[..start], &text[start..]);
         let error = Model::from_ron(&lie).expect_err(stated);
-        let InvalidModel::FalseItem(found) = &error.problem else { panic!("{stated}: {error}") };
+        let InvalidModel::Entity(EntityError::FalseItem(found)) = &error.problem else { panic!("{stated}: {error}") };
         assert_eq!(found.field, "representation.irregularities[0]", "{error}");
         assert!((found.deviation - deviation).abs() < 1e-8, "{stated}: {error}");
         assert_eq!(Model::from_ron_with(&lie, Trust::Repair).expect("repaired").to_ron(), text, "{stated}");

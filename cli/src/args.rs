@@ -32,6 +32,14 @@ pub(crate) enum Command {
     Show(ShowArguments),
     /// Explain how an entity's queries are answered, and why so
     Explain(ExplainArguments),
+    /// Remove what definitions do not need; the shapes stay
+    Clean(CleanArguments),
+    /// Remove what definitions hardly need, within a tolerance that you name; the originals are kept
+    Purge(PurgeArguments),
+    /// Take curves apart where they have cusps and loops
+    Decompose(DecomposeArguments),
+    /// Give purged entities their originals again
+    Restore(RestoreArguments),
     /// Project points: the nearest point of an entity, or of the whole model, to each
     Project(ProjectArguments),
 }
@@ -100,6 +108,78 @@ pub(crate) struct ExplainArguments {
     /// Write JSON, for programs
     #[arg(long)]
     pub(crate) json: bool,
+}
+
+/// Remove what definitions do not need: knots and control points, degrees, equal weights. The shapes and their parameters stay, to
+/// a rounding that is proven.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct CleanArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// Clean this entity alone
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// The file for the model, written whole or not at all; it may be MODEL
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+}
+
+/// Remove what definitions hardly need: near knots, and knots and control points that carry less than a tolerance. This changes
+/// the shapes, so the tolerance has no default. How far points moved is proven; the originals are kept in the model.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct PurgeArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// How far points may move from where they are in the original, in the model's unit: giving it is your consent
+    #[arg(long, value_name = "T", value_parser = tolerance, allow_negative_numbers = true)]
+    pub(crate) tolerance: f64,
+    /// Purge this entity alone
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// The file for the model, written whole or not at all; it may be MODEL
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+}
+
+/// Take curves apart where they have cusps and loops: the parts, which have none, are added to the model as new entities.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct DecomposeArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// Take this curve apart alone; without it, every curve
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// The file for the model, written whole or not at all; it may be MODEL
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+}
+
+/// Give purged entities their originals again, bit for bit.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct RestoreArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// Restore this entity alone
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// Drop the originals instead: the entities stay as they are, for good
+    #[arg(long)]
+    pub(crate) drop: bool,
+    /// The file for the model, written whole or not at all; it may be MODEL
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
 }
 
 /// Project points: the nearest point of an entity, or of the whole model, to each.
@@ -174,6 +254,13 @@ fn length(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(length),
         _ => Err("it is a length in the model's unit: a finite number, at least 0".to_owned()),
+    }
+}
+
+fn tolerance(text: &str) -> Result<f64, String> {
+    match length(text) {
+        Ok(length) if length > 0.0 => Ok(length),
+        _ => Err("it is how far points may move, in the model's unit: a finite number above 0".to_owned()),
     }
 }
 

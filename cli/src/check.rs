@@ -7,6 +7,7 @@ use perpend::{Cleaning, Definition, Direction, Entity};
 
 use crate::args::CheckArguments;
 use crate::error::CommandError;
+use crate::prepare;
 use crate::report::{self, counted, rounded};
 
 pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> {
@@ -15,7 +16,7 @@ pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> 
     let surfaces = model.entities().iter().filter(|e| matches!(**e.definition(), Definition::NurbsSurface(_))).count();
     let mut text = String::new();
     for entity in model.entities() {
-        describe(&mut text, entity);
+        describe(&mut text, entity, model.units().symbol());
     }
     let count = |count: usize, noun| counted(count as u64, noun);
     let _ = write!(
@@ -40,13 +41,16 @@ pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> 
 }
 
 /// A line for the entity, and one for each thing to know about it.
-fn describe(text: &mut String, entity: &Entity) {
+fn describe(text: &mut String, entity: &Entity, unit: &str) {
     let _ = writeln!(text, "{:>6}  {:?}: {}", entity.id(), entity.name(), shape(entity.definition()));
     for direction in clamped(entity) {
         let _ = writeln!(
             text,
             "        knots in {direction} came unclamped and were clamped, which leaves the shape as it is"
         );
+    }
+    for line in prepare::told(entity, unit) {
+        let _ = writeln!(text, "        {line}");
     }
     let stale = entity.stale();
     if !stale.is_empty() {
@@ -74,8 +78,9 @@ fn clamped(entity: &Entity) -> Vec<Direction> {
     let items = representation.and_then(|part| part.cleaning.as_deref()).unwrap_or_default();
     let mut directions: Vec<Direction> = items
         .iter()
-        .map(|item| match item.value {
-            Cleaning::Clamped { direction } => direction,
+        .filter_map(|item| match item.value {
+            Cleaning::Clamped { direction } => Some(direction),
+            _ => None,
         })
         .collect();
     directions.sort_unstable();

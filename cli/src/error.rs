@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use perpend::{EntityId, Model, ReadError, WriteError};
+use perpend::{EditError, EntityId, Model, ReadError, WriteError};
 
 use crate::project::points::PointsError;
 
@@ -19,6 +19,8 @@ pub(crate) enum CommandError {
     NoEntities { model: PathBuf },
     #[error("{name}{}: {problem}", problem.line().map_or_else(String::new, |line| format!(":{line}")))]
     Points { name: String, problem: PointsError },
+    #[error("{}: {source}", model.display())]
+    Edit { model: PathBuf, source: EditError },
     #[error(transparent)]
     Output(#[from] WriteError),
     #[error("cannot write to standard output: {0}")]

@@ -6,6 +6,7 @@ mod error;
 mod explain;
 mod learn;
 mod names;
+mod prepare;
 mod project;
 mod report;
 mod show;
@@ -24,6 +25,10 @@ fn main() -> ExitCode {
         Command::Learn(arguments) => learn::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),
         Command::Explain(arguments) => explain::run(&arguments),
+        Command::Clean(arguments) => prepare::clean(&arguments),
+        Command::Purge(arguments) => prepare::purge(&arguments),
+        Command::Decompose(arguments) => prepare::decompose(&arguments),
+        Command::Restore(arguments) => prepare::restore(&arguments),
         Command::Project(arguments) => project::run(&arguments),
     };
     match done {

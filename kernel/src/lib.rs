@@ -43,7 +43,7 @@ pub use construct::{
 };
 pub use curve::{CurveData, NurbsCurve};
 pub use definition::{Definition, DefinitionData};
-pub use edit::{InvalidEdit, KnotRemoval};
+pub use edit::{DegreeReduction, InvalidEdit, KnotRemoval, Thinned};
 pub use fingerprint::{Fingerprint, InvalidFingerprint};
 pub use glam;
 pub use homogeneous::{cartesian, homogeneous};

@@ -40,7 +40,7 @@ pub struct Representation {
     /// The smallest and the largest weight.
     #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
     pub weights: Option<Item<(f64, f64)>>,
-    /// What was done to the defining data on their way in.
+    /// What was done to the defining data: on their way in, by cleaning, or by purging.
     #[serde(default, with = "bare", skip_serializing_if = "Option::is_none")]
     pub cleaning: Option<Vec<Item<Cleaning>>>,
 }
@@ -230,13 +230,46 @@ fn is_zero(x: &f64) -> bool {
     x.to_bits() == 0
 }
 
-/// What was done to the defining data on their way in.
-#[derive(Debug, Clone, Copy, PartialEq, Serialize, Deserialize)]
+/// What was done to the defining data: on their way in, by cleaning, or by purging.
+///
+/// The basis of an item bounds how far points moved: of a cleaning, by all its steps together; of a purge, from the original that
+/// is kept.
+#[derive(Debug, Clone, PartialEq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub enum Cleaning {
     /// The knots were not clamped; they were, by knot insertion, which leaves the entity as it is.
     Clamped {
         /// The direction of the knots.
         direction: Direction,
+    },
+    /// Knots without which the entity is the same were removed.
+    RemovedKnots {
+        /// Their direction.
+        direction: Direction,
+        /// The knots, ascending, each as often as it was removed.
+        knots: Vec<f64>,
+    },
+    /// The degree was higher than the entity needs, and was lowered.
+    ReducedDegree {
+        /// The direction.
+        direction: Direction,
+        /// The degree before.
+        from: usize,
+        /// The degree after.
+        to: usize,
+    },
+    /// All weights were one number, and were left out.
+    DroppedWeights {
+        /// The number.
+        weight: f64,
+    },
+    /// Knots were removed, and near ones merged, within a tolerance that the application named: the item's.
+    Purged {
+        /// Their direction.
+        direction: Direction,
+        /// The knots that went, ascending, each as often as it did.
+        removed: Vec<f64>,
+        /// The knots that others were merged into, as often as they were added.
+        added: Vec<f64>,
     },
 }

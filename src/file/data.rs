@@ -7,7 +7,7 @@ use perpend_knowledge::Record;
 use serde::Deserialize;
 
 use crate::dependence::Dependence;
-use crate::entity::{Entity, EntityData, EntityError};
+use crate::entity::{Entity, EntityData};
 use crate::file::error::{InvalidModel, ModelError};
 use crate::file::outline::{Outline, line_at};
 use crate::file::syntax;
@@ -54,14 +54,7 @@ pub(super) fn read(text: &str, trust: Trust) -> Result<Model, ModelError> {
         if id.get() == u64::MAX {
             return Err(wrong(InvalidModel::LastId));
         }
-        entities.push(Entity::settled(entity, trust).map_err(|error| {
-            wrong(match error {
-                EntityError::Definition(error) => error.into(),
-                EntityError::Knowledge(error) => error.into(),
-                EntityError::FalseClass(error) => error.into(),
-                EntityError::FalseItem(error) => error.into(),
-            })
-        })?);
+        entities.push(Entity::settled(entity, trust).map_err(|error| wrong(error.into()))?);
     }
     for (index, entity) in entities.iter().enumerate() {
         let references = entity.record.as_ref().map_or_else(Vec::new, Record::references);

@@ -4,11 +4,10 @@ use std::fmt;
 use std::io;
 use std::path::PathBuf;
 
-use perpend_kernel::{EntityId, InvalidDefinition};
-use perpend_knowledge::{Contradiction, NonFinite, Refuted};
+use perpend_kernel::EntityId;
 
 use crate::dependence::shown;
-use crate::trust::FIELD;
+use crate::entity::EntityError;
 
 /// Why a model could not be read from a file.
 #[derive(Debug, thiserror::Error)]
@@ -133,16 +132,7 @@ pub enum InvalidModel {
         /// Entities each of which is made of the one before it, and the first of the last.
         circle: Vec<EntityId>,
     },
-    /// A definition breaks a rule.
-    #[error("definition: {0}")]
-    Definition(#[from] InvalidDefinition),
-    /// A number of a record is not finite.
-    #[error("knowledge: {0}")]
-    Knowledge(#[from] NonFinite),
-    /// A record states a class that its definition is proved not to have.
-    #[error("knowledge: {FIELD}: {0}")]
-    FalseClass(#[from] Refuted),
-    /// A record states something else that its definition contradicts.
-    #[error("knowledge: {0}")]
-    FalseItem(#[from] Contradiction),
+    /// An entity is refused for what it says itself.
+    #[error(transparent)]
+    Entity(#[from] EntityError),
 }

@@ -38,57 +38,68 @@ pub(super) fn write(model: &Model, out: impl Write) -> io::Result<()> {
 fn entity(out: &mut impl Write, entity: &Entity) -> io::Result<()> {
     writeln!(out, "        (\n            id: {},", entity.id())?;
     writeln!(out, "            name: {},", ron::to_string(entity.name()).map_err(io::Error::other)?)?;
-    match entity.definition().as_ref() {
-        Definition::NurbsCurve(one) => curve(out, one)?,
-        Definition::NurbsSurface(one) => surface(out, one)?,
-    }
+    definition(out, 12, entity.definition())?;
     if let Some(known) = entity.record() {
-        record(out, known)?;
+        record(out, 12, known)?;
+    }
+    if let Some(original) = entity.original() {
+        writeln!(out, "            original: Some((")?;
+        definition(out, 16, original.definition())?;
+        if let Some(known) = original.record() {
+            record(out, 16, known)?;
+        }
+        writeln!(out, "            )),")?;
     }
     writeln!(out, "        ),")
 }
 
-fn curve(out: &mut impl Write, curve: &NurbsCurve) -> io::Result<()> {
-    writeln!(out, "            definition: NurbsCurve(\n                degree: {},", curve.degree())?;
-    list(out, 16, "knots: [", curve.knots().as_slice().iter().map(number), "],")?;
-    list(out, 16, "control_points: [", curve.control_points().iter().map(point), "],")?;
-    if let Some(weights) = curve.weights() {
-        list(out, 16, "weights: Some([", weights.iter().map(number), "]),")?;
+fn definition(out: &mut impl Write, indent: usize, definition: &Definition) -> io::Result<()> {
+    write!(out, "{:indent$}definition: ", "")?;
+    match definition {
+        Definition::NurbsCurve(one) => curve(out, indent + 4, one)?,
+        Definition::NurbsSurface(one) => surface(out, indent + 4, one)?,
     }
-    writeln!(out, "            ),")
+    writeln!(out, "{:indent$}),", "")
 }
 
-fn surface(out: &mut impl Write, surface: &NurbsSurface) -> io::Result<()> {
-    let (p, q) = surface.degree();
-    writeln!(
-        out,
-        "            definition: NurbsSurface(\n                degree: ({p}, {q}),\n                knots: ("
-    )?;
+fn curve(out: &mut impl Write, indent: usize, curve: &NurbsCurve) -> io::Result<()> {
+    writeln!(out, "NurbsCurve(\n{:indent$}degree: {},", "", curve.degree())?;
+    list(out, indent, "knots: [", curve.knots().as_slice().iter().map(number), "],")?;
+    list(out, indent, "control_points: [", curve.control_points().iter().map(point), "],")?;
+    match curve.weights() {
+        Some(weights) => list(out, indent, "weights: Some([", weights.iter().map(number), "]),"),
+        None => Ok(()),
+    }
+}
+
+fn surface(out: &mut impl Write, indent: usize, surface: &NurbsSurface) -> io::Result<()> {
+    let ((p, q), row) = (surface.degree(), indent + 4);
+    writeln!(out, "NurbsSurface(\n{:indent$}degree: ({p}, {q}),\n{:indent$}knots: (", "", "")?;
     for direction in [Direction::U, Direction::V] {
-        list(out, 20, "[", surface.knots(direction).as_slice().iter().map(number), "],")?;
+        list(out, row, "[", surface.knots(direction).as_slice().iter().map(number), "],")?;
     }
-    writeln!(out, "                ),\n                control_points: [")?;
-    for row in surface.control_points().chunks(surface.columns()) {
-        list(out, 20, "[", row.iter().map(point), "],")?;
+    writeln!(out, "{:indent$}),\n{:indent$}control_points: [", "", "")?;
+    for points in surface.control_points().chunks(surface.columns()) {
+        list(out, row, "[", points.iter().map(point), "],")?;
     }
-    writeln!(out, "                ],")?;
+    writeln!(out, "{:indent$}],", "")?;
     if let Some(weights) = surface.weights() {
-        writeln!(out, "                weights: Some([")?;
-        for row in weights.chunks(surface.columns()) {
-            list(out, 20, "[", row.iter().map(number), "],")?;
+        writeln!(out, "{:indent$}weights: Some([", "")?;
+        for weights in weights.chunks(surface.columns()) {
+            list(out, row, "[", weights.iter().map(number), "],")?;
         }
-        writeln!(out, "                ]),")?;
+        writeln!(out, "{:indent$}]),", "")?;
     }
-    writeln!(out, "            ),")
+    Ok(())
 }
 
 /// A record is small: its layout is that of the RON writer, indented.
-fn record(out: &mut impl Write, record: &Record) -> io::Result<()> {
+fn record(out: &mut impl Write, indent: usize, record: &Record) -> io::Result<()> {
     let config = PrettyConfig::new().depth_limit(3).separate_tuple_members(false).new_line("\n").indentor("    ");
     let text = ron::ser::to_string_pretty(record, config).map_err(io::Error::other)?;
     let mut lines = text.lines();
-    write!(out, "            knowledge: Some({}", lines.next().unwrap_or_default())?;
-    lines.try_for_each(|line| write!(out, "\n            {line}"))?;
+    write!(out, "{:indent$}knowledge: Some({}", "", lines.next().unwrap_or_default())?;
+    lines.try_for_each(|line| write!(out, "\n{:indent$}{line}", ""))?;
     writeln!(out, "),")
 }
 

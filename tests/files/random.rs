@@ -229,7 +229,14 @@ fn representation() -> impl Strategy<Value = Representation> {
     let break_ = (direction(), number(), any::<u32>(), any::<u32>(), range())
         .prop_map(|(direction, at, c, g, (c_within, g_within))| Break { direction, at, c, g, c_within, g_within });
     let bounds = (vector(), vector()).prop_map(|(min, max)| Aabb { min, max });
-    let cleaning = direction().prop_map(|direction| Cleaning::Clamped { direction });
+    let cleaning = prop_oneof![
+        direction().prop_map(|direction| Cleaning::Clamped { direction }),
+        (direction(), vec(number(), 0..4)).prop_map(|(direction, knots)| Cleaning::RemovedKnots { direction, knots }),
+        (direction(), 1..25_usize).prop_map(|(direction, to)| Cleaning::ReducedDegree { direction, from: to + 1, to }),
+        number().prop_map(|weight| Cleaning::DroppedWeights { weight }),
+        (direction(), vec(number(), 0..4), vec(number(), 0..4))
+            .prop_map(|(direction, removed, added)| Cleaning::Purged { direction, removed, added }),
+    ];
     (
         (items(speed), items(break_), items(irregularity()), items(cleaning)),
         (

@@ -6,5 +6,6 @@ mod check_and_show;
 mod explain;
 mod learn;
 mod output;
+mod prepare;
 mod project;
 mod workshop;

@@ -81,6 +81,11 @@ impl Blend {
         Self::new(first, &sum)
     }
 
+    /// The first place, and the shares from there on.
+    pub(crate) fn row(&self) -> (usize, Vec<f64>) {
+        (self.first, self.shares.clone())
+    }
+
     /// The combination of homogeneous points.
     pub(crate) fn of_homogeneous(&self, net: &[DVec4]) -> DVec4 {
         self.shares.iter().zip(&net[self.first..]).map(|(share, point)| *share * *point).sum()

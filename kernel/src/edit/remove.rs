@@ -13,6 +13,7 @@
 use glam::{DVec3, DVec4};
 
 use super::invalid::InvalidEdit;
+use super::thin::middle;
 use crate::bounds::Aabb;
 use crate::curve::NurbsCurve;
 use crate::invalid::{Along, Direction};
@@ -146,10 +147,10 @@ impl Step {
         Some(Self { knots: KnotVector::trusted(p, knots), first, shares })
     }
 
-    /// The new points: the equations of the left half solved from the left, those of the right half from the right; one in
-    /// the middle is left over, and what it misses is part of the deviation.
+    /// The new points: equations solved from the left and from the right; the one where they meet is left over, and what it misses is
+    /// part of the deviation.
     fn solve(&self, line: &[DVec4]) -> Vec<DVec4> {
-        let middle = self.shares.len() / 2;
+        let middle = middle(&self.shares);
         let equation = |k: usize| (line[self.first + k], self.shares[k]);
         let mut left = Vec::with_capacity(middle);
         let mut before = line[self.first - 1];
