@@ -18,7 +18,7 @@ fn each_row_is_answered_by_the_entity_that_it_names() {
     for (row, fields, place) in known {
         assert_eq!(run.rows()[row][..10], fields);
         assert_eq!(run.field(row, "place"), place);
-        assert_eq!((run.field(row, "multiplicity"), run.field(row, "method")), ("unique", "hierarchy"));
+        assert_eq!((run.field(row, "multiplicity"), run.field(row, "method")), ("unique", "analytic"));
         let (distance, lower_bound) = (run.number(row, "distance"), run.number(row, "lower_bound"));
         // the default gap is 1e-9 times the size, which is below 6 for both
         assert!(lower_bound <= distance && distance - lower_bound <= 6e-9, "{lower_bound} {distance}");
@@ -219,7 +219,7 @@ fn the_summary_counts() {
     run.ends(1, "4 points in ");
     for line in [
         "largest gap:    ",
-        "answered by:    hierarchy 2\n",
+        "answered by:    analytic 2\n",
         "not certified:  0\n",
         "beyond maximum: 1\n",
         "bad rows:       1\n",
@@ -234,7 +234,7 @@ fn usage_errors_name_the_remedy() {
     let workshop = Workshop::new();
     workshop.write("points.csv", "x,y,z\n1,2,3\n");
     let project = |options: &[&str]| workshop.run(&[&["project", "model.ron", "points.csv"], options].concat());
-    project(&["--method", "wave"]).ends(2, "[possible values: hierarchy]");
+    project(&["--method", "sextant"]).ends(2, "[possible values: analytic, hierarchy,");
     project(&["--method", "hierarchy"]).ends(0, "answered by:    hierarchy 1");
     project(&["--gap", "-1"]).ends(2, "it is a length in the model's unit: a finite number, at least 0");
     project(&["--max-distance", "nan"]).ends(2, "it is a length in the model's unit: a finite number, at least 0");
