@@ -14,6 +14,8 @@ mod almost;
 mod case;
 #[path = "analytic/forms.rs"]
 mod forms;
+#[path = "analytic/options.rs"]
+mod options;
 #[path = "analytic/probes.rs"]
 mod probes;
 #[path = "analytic/profiles.rs"]

@@ -239,6 +239,27 @@ fn a_false_class_in_a_model_changes_no_answer() {
     }
 }
 
+#[test]
+fn knowledge_of_another_definition_changes_no_answer() {
+    let shapes = shapes();
+    for (k, exact) in shapes.iter().enumerate() {
+        let definition = exact.made().0;
+        let points = queries(exact, 4, 12);
+        for other in shapes.iter().skip(k + 1).chain(&shapes[..k]) {
+            // all that is true of another entity, by its own fingerprint
+            let model = with_record(&definition, Some(known(&other.made().0))).expect("stale, not false");
+            answers_truly("stale", exact, &model, &points);
+            // the same entity, asked, changed, and asked again
+            let mut edited = with_record(&other.made().0, None).expect("valid");
+            let id = edited.entities()[0].id();
+            edited.learn(id).expect("the entity is there");
+            answers_truly("before", other, &edited, &queries(other, 5, 2));
+            edited.replace(id, definition.clone()).expect("valid");
+            answers_truly("replaced", exact, &edited, &points[..4]);
+        }
+    }
+}
+
 /// Lies about how the parametrisation of a definition behaves, as fields of the record's part.
 fn false_representations(definition: &Definition) -> Vec<(&'static str, Value)> {
     let of = json!(definition.fingerprint());

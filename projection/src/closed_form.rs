@@ -36,17 +36,25 @@ impl ClosedForm {
     /// The definition at a proposal's parameters, seen from the query.
     fn evaluate(&self, query: &Query, proposal: &Proposal) -> Solution {
         let &Proposal { mut u, mut v, lower_bound, tie } = proposal;
+        let ulp = f64::EPSILON * self.reach;
         let (point, normal) = match &*self.definition {
             Definition::NurbsCurve(curve) if self.analytic.is_elliptic() => {
                 let point;
-                (u, point) = polished(curve, u, query.point, f64::EPSILON * self.reach);
+                (u, point) = polished(curve, u, query.point, ulp);
                 (point, DVec3::ZERO)
             }
             Definition::NurbsCurve(curve) => (curve.point(u), DVec3::ZERO),
             Definition::NurbsSurface(surface) => {
-                (u, v) = self.on_border(surface, u, v);
                 let mut d = [DVec3::ZERO; 4];
                 surface.derivatives(u, v, 1, &mut d);
+                if let Some(better) = polished_on(surface, (u, v), &d, query.point, ulp) {
+                    ((u, v), d) = better;
+                }
+                let border = self.on_border(surface, u, v);
+                if border != (u, v) {
+                    (u, v) = border;
+                    surface.derivatives(u, v, 1, &mut d);
+                }
                 (d[0], unit_normal(d[2], d[1]))
             }
         };
@@ -104,6 +112,45 @@ fn polished(curve: &NurbsCurve, u: f64, p: DVec3, ulp: f64) -> (f64, DVec3) {
         }
     }
     (u, d[0])
+}
+
+/// As [`polished`], on a surface whose derivatives at `(u, v)` are `d`: none where the step promises no more than rounding or does not
+/// keep the promise.
+///
+/// The parameters of a profile that is flat as seen along the vector of its extrusion are not known as exactly as its points, nor is
+/// an angle beside a pole.
+fn polished_on(
+    surface: &NurbsSurface,
+    (u, v): (f64, f64),
+    d: &[DVec3; 4],
+    p: DVec3,
+    ulp: f64,
+) -> Option<((f64, f64), [DVec3; 4])> {
+    let (arm, along_u, along_v) = (d[0] - p, d[2], d[1]);
+    let (a, b, c) = (along_u.length_squared(), along_u.dot(along_v), along_v.length_squared());
+    let (g, h) = (arm.dot(along_u), arm.dot(along_v));
+    let determinant = a * c - b * b;
+    let (du, dv) = ((b * h - c * g) / determinant, (b * g - a * h) / determinant);
+    // the square of the distance falls by this
+    let promise = -(g * du + h * dv);
+    let distance = arm.length();
+    let promised = (distance * distance - promise).max(0.0).sqrt();
+    if promised.is_nan() || promised + 2.0 * ulp >= distance {
+        return None;
+    }
+    let ((first_u, last_u), (first_v, last_v)) = (surface.domain(Direction::U), surface.domain(Direction::V));
+    // where an edge stops one parameter, the other has its own least value
+    let stopped = |t: f64, step: f64, first: f64, last: f64| (t + step).clamp(first, last) - t;
+    let (to_u, to_v) = (stopped(u, du, first_u, last_u), stopped(v, dv, first_v, last_v));
+    let (to_u, to_v) = match (to_u == (u + du) - u, to_v == (v + dv) - v) {
+        (false, true) => (to_u, -(h + b * to_u) / c),
+        (true, false) => (-(g + b * to_v) / a, to_v),
+        _ => (to_u, to_v),
+    };
+    let next = ((u + to_u).clamp(first_u, last_u), (v + to_v).clamp(first_v, last_v));
+    let mut there = [DVec3::ZERO; 4];
+    surface.derivatives(next.0, next.1, 1, &mut there);
+    (there[0].distance(p) + 2.0 * ulp < distance).then_some((next, there))
 }
 
 impl Solver for ClosedForm {
