@@ -40,6 +40,10 @@ pub(crate) enum Command {
     Decompose(DecomposeArguments),
     /// Give purged entities their originals again
     Restore(RestoreArguments),
+    /// Make an entity again as it was made, and say how far it is from that
+    Replay(ReplayArguments),
+    /// List the entities that an edit of one would touch
+    Impact(ImpactArguments),
     /// Project points: the nearest point of an entity, or of the whole model, to each
     Project(ProjectArguments),
 }
@@ -180,6 +184,41 @@ pub(crate) struct RestoreArguments {
     /// The file for the model, written whole or not at all; it may be MODEL
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+}
+
+/// Make an entity again as it was made, and say how far it is from that.
+///
+/// The steps of its design intent are run again on the entities of the model; the model stays as it is. The deviation is
+/// proven from control points, parameter by parameter, and measured at samples.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ReplayArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// The entity
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: EntityId,
+    /// Write JSON, for programs
+    #[arg(long)]
+    pub(crate) json: bool,
+}
+
+/// List the entities that an edit of one would touch, in the order in which they would be rebuilt, and why.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ImpactArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// The entity
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: EntityId,
+    /// Write JSON, for programs
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 /// Project points: the nearest point of an entity, or of the whole model, to each.

@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use perpend::{EditError, EntityId, Model, ReadError, WriteError};
+use perpend::{EditError, EntityId, Model, ReadError, ReplayError, WriteError};
 
 use crate::project::points::PointsError;
 
@@ -15,6 +15,8 @@ pub(crate) enum CommandError {
     Model(#[from] ReadError),
     #[error("{}: no entity has the id {id}; {known}", model.display())]
     UnknownEntity { model: PathBuf, id: EntityId, known: String },
+    #[error("{}: {source}", model.display())]
+    Replay { model: PathBuf, source: ReplayError },
     #[error("{}: the model has no entities, so nothing is nearest: add one", model.display())]
     NoEntities { model: PathBuf },
     #[error("{name}{}: {problem}", problem.line().map_or_else(String::new, |line| format!(":{line}")))]

@@ -4,10 +4,12 @@ mod args;
 mod check;
 mod error;
 mod explain;
+mod impact;
 mod learn;
 mod names;
 mod prepare;
 mod project;
+mod replay;
 mod report;
 mod show;
 
@@ -29,6 +31,8 @@ fn main() -> ExitCode {
         Command::Purge(arguments) => prepare::purge(&arguments),
         Command::Decompose(arguments) => prepare::decompose(&arguments),
         Command::Restore(arguments) => prepare::restore(&arguments),
+        Command::Replay(arguments) => replay::run(&arguments),
+        Command::Impact(arguments) => impact::run(&arguments),
         Command::Project(arguments) => project::run(&arguments),
     };
     match done {

@@ -1,6 +1,6 @@
 //! Names of enum values in output and on the command line.
 
-use perpend::{Method, Multiplicity, Place};
+use perpend::{Effect, EntityId, Method, Model, Multiplicity, Place, Relation};
 
 /// All methods that can be asked for.
 pub(crate) const METHODS: [Method; 5] =
@@ -35,4 +35,37 @@ pub(crate) fn multiplicity(multiplicity: Multiplicity) -> &'static str {
         Multiplicity::Tied => "tied",
         Multiplicity::Continuum => "continuum",
     }
+}
+
+pub(crate) fn effect(effect: &Effect) -> &'static str {
+    match effect {
+        Effect::Rebuilt => "rebuilt",
+        Effect::Overridden => "overridden",
+        Effect::Kept { .. } => "kept",
+        _ => "refers",
+    }
+}
+
+/// What another entity is to one; of an application's own relationship, its name there.
+pub(crate) fn relation(relation: &Relation) -> String {
+    match relation {
+        Relation::Definition => "definition",
+        Relation::Boundary => "boundary",
+        Relation::Profile => "profile",
+        Relation::Axis => "axis",
+        Relation::Rail => "rail",
+        Relation::Section => "section",
+        Relation::Offset => "offset",
+        Relation::FittedTo => "fitted-to",
+        Relation::IsoCurveOf => "iso-curve-of",
+        Relation::PartOf => "part-of",
+        Relation::CopyOf => "copy-of",
+        Relation::Other(name) => name,
+    }
+    .to_owned()
+}
+
+/// An entity's id and name.
+pub(crate) fn entity(model: &Model, id: EntityId) -> String {
+    model.entity(id).map_or_else(|| id.to_string(), |entity| format!("{id} {:?}", entity.name()))
 }

@@ -1,7 +1,9 @@
 //! Constructions do what they say, point by point.
 
 use perpend_kernel::glam::{DQuat, DVec3};
-use perpend_kernel::{Direction, NurbsCurve, Spacing, curve_through, extrusion, revolution, ruled, surface_through};
+use perpend_kernel::{
+    Circle, Direction, NurbsCurve, Spacing, curve_through, extrusion, loft, revolution, ruled, surface_through,
+};
 use proptest::collection::vec;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
@@ -190,4 +192,48 @@ fn knots_that_agree_but_for_the_rounding_of_the_mapping_count_once() {
     let surface = ruled(&a, &b).expect("compatible");
     assert_eq!((surface.rows(), surface.columns()), (11, 2));
     assert_eq!(surface.knots(Direction::U), a.knots());
+}
+
+proptest! {
+    #[test]
+    fn a_loft_passes_its_sections(sections in vec(curve(4), 2..6), degree in 1..4_usize) {
+        // one domain, so that equal parameters are corresponding ones
+        let (first, last) = sections[0].domain();
+        let sections: Vec<NurbsCurve> = sections.iter().map(|one| one.with_domain(first, last).expect("valid")).collect();
+        let given: Vec<&NurbsCurve> = sections.iter().collect();
+        match loft(&given, degree) {
+            Ok(surface) => {
+                prop_assert_eq!(surface.knots(Direction::V).degree(), degree);
+                prop_assert_eq!((surface.domain(Direction::U), surface.domain(Direction::V)), ((first, last), (0.0, 1.0)));
+                for (section, at) in [(&sections[0], 0.0), (&sections[sections.len() - 1], 1.0)] {
+                    for u in parameters(section.knots()) {
+                        // elevation and refinement to the common degree and knots, a few tens of roundings each
+                        let tolerance = 64.0 * rounding(surface.degree().0 + 2, surface.control_points());
+                        prop_assert!((surface.point(u, at) - oracle::at(section, u)).length() <= tolerance);
+                    }
+                }
+            }
+            Err(error) => {
+                let is_reason = error.to_string().contains("weight") || sections.len() <= degree;
+                prop_assert!(is_reason, "{}", error);
+            }
+        }
+    }
+
+    #[test]
+    fn an_arc_through_points_passes_them_in_their_order(start in point(), through in point(), end in point(), far in point()) {
+        let (far, sine) = (1e3 * far, (through - start).cross(end - start).length());
+        let lengths = [through - start, end - start, end - through].map(|side| side.length());
+        prop_assume!(sine > 1e-3 * lengths[0] * lengths[1] && lengths.iter().all(|length| *length > 1e-3));
+        let arc = Circle::through(far + start, far + through, far + end).expect("not on one line");
+        let curve = arc.to_nurbs().expect("valid");
+        // rounding of coordinates, and of a centre that is the less certain the flatter the three lie
+        let tolerance = 64.0 * f64::EPSILON * (1e3 + arc.radius) * (lengths[0] * lengths[1] / sine).powi(2);
+        prop_assert!(curve.point(0.0).distance(far + start) <= tolerance);
+        prop_assert!(curve.point(1.0).distance(far + end) <= tolerance);
+        let arm = far + through - arc.frame.centre;
+        prop_assert!((arm.length() - arc.radius).abs() <= tolerance && arm.dot(arc.frame.axis).abs() <= tolerance);
+        let angle = arm.dot(arc.frame.ydir()).atan2(arm.dot(arc.frame.xdir)).rem_euclid(TAU);
+        prop_assert!(angle < arc.sweep.1 + tolerance / arc.radius, "{} of {:?}", angle, arc.sweep);
+    }
 }
