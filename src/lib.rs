@@ -93,3 +93,8 @@ struct Guide;
 #[cfg(doctest)]
 #[doc = include_str!("../docs/preparation.md")]
 struct PreparationPage;
+
+/// The programs of an entity's life, run as tests.
+#[cfg(doctest)]
+#[doc = include_str!("../docs/life-of-an-entity.md")]
+struct Life;

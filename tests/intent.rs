@@ -14,6 +14,8 @@ mod offsets;
 mod operations;
 #[path = "intent/overridden.rs"]
 mod overridden;
+#[path = "intent/random_edits.rs"]
+mod random_edits;
 #[path = "intent/stated.rs"]
 mod stated;
 #[path = "intent/workshop.rs"]
