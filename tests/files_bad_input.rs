@@ -89,7 +89,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "            id: 7,\n",
         "            id: 7,\n            colour: 3,\n",
-        "17:13: entity 7: `Entity` has no field `colour`; its fields are `id`, `name`, `definition`, `knowledge`",
+        "17:13: entity 7: `Entity` has no field `colour`; its fields are `id`, `name`, `definition`, `knowledge`, `original`",
     ),
     ("                degree: 2,\n", "", "12:13: entity 4: `NurbsCurve` lacks its field `degree`: add it"),
     (
