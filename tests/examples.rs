@@ -5,6 +5,10 @@ use std::path::{Path, PathBuf};
 
 use perpend::{DVec3, Definition, Direction, EntityId, FootPoint, Model, Multiplicity, Parameter, QueryOptions};
 
+#[path = "../examples/draw_wave/picture.rs"]
+mod picture;
+#[path = "../examples/draw_wave/svg.rs"]
+mod svg;
 #[path = "../examples/workshop/mod.rs"]
 mod workshop;
 
@@ -123,4 +127,24 @@ fn certified(foot: &FootPoint, p: DVec3, model: &Model, id: EntityId, size: f64)
     };
     assert_eq!(there, foot.point, "{id}, {p}");
     assert!((p.distance(foot.point) - foot.distance).abs() <= 8.0 * f64::EPSILON * reach, "{id}, {p}");
+}
+
+#[test]
+fn the_pictures_of_the_book_show_what_the_wave_holds() {
+    let model = workshop::model().unwrap();
+    let count = |text: &str, what: &str| text.matches(what).count();
+    for (name, drawn) in picture::all(&model).unwrap() {
+        let kept = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("docs").join(name)).unwrap();
+        // the last digit of a coordinate may differ where sines do
+        for shape in ["<polygon", "<polyline", "<circle", "<path", "<text"] {
+            assert_eq!(count(&drawn, shape), count(&kept, shape), "{shape} in {name}: draw_wave draws it anew");
+        }
+        assert!(!drawn.contains("NaN") && !drawn.contains("inf"), "{name}");
+    }
+    let pictures = picture::all(&model).unwrap();
+    let coil = model.named("coil").next().unwrap();
+    let definition = coil.definition();
+    let wave = perpend::Wave::new(definition.clone(), perpend::WaveSettings::recommended(definition));
+    let cells = &pictures.iter().find(|(name, _)| *name == "wave-cells.svg").unwrap().1;
+    assert_eq!(count(cells, r#"class="point""#), wave.points().len());
 }
