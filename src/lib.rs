@@ -74,9 +74,10 @@ pub use perpend_knowledge::{
 };
 pub use perpend_knowledge::{BuildError, Deviation, Difference, Shape};
 pub use perpend_projection::{
-    self as projection, Continuum, Decomposition, FootPoint, Method, Multiplicity, NewtonTolerances, Parameter,
-    ParameterBox, Place, Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch, Settings, Statistics, Ties,
-    Wave, WaveSettings, WaveTrace, Work,
+    self as projection, Certainty, Continuum, Decomposition, Extremum, FootPoint, Method, Multiplicity,
+    NewtonTolerances, Parameter, ParameterBox, Place, Plan, Prepared, Query, QueryError, QueryOptions, Reason, Scratch,
+    Settings, StationaryOptions, StationaryPoint, StationaryPoints, Statistics, Ties, Wave, WaveSettings, WaveTrace,
+    Work,
 };
 
 /// The program of the README, run as a test.

@@ -2,7 +2,9 @@
 
 use glam::DVec3;
 use perpend_kernel::EntityId;
-use perpend_projection::{FootPoint, Prepared, Query, QueryError, QueryOptions, Scratch, Ties};
+use perpend_projection::{
+    FootPoint, Prepared, Query, QueryError, QueryOptions, Scratch, StationaryOptions, StationaryPoints, Ties,
+};
 
 use crate::batch;
 use crate::model::Model;
@@ -63,6 +65,31 @@ impl Model {
     pub fn project_ties(&self, id: EntityId, p: DVec3, options: &QueryOptions) -> Result<Option<Ties>, QueryError> {
         let prepared = self.prepared(id)?;
         Ok(prepared.project_ties(&Query::new(p, *options)?, &mut Scratch::default()))
+    }
+
+    /// All stationary points of the distance from `p` to an entity: minima, maxima and saddles, inside, on edges and creases, at ends and corners.
+    ///
+    /// ```
+    /// use perpend::{Circle, DVec3, Extremum, Frame, Model, StationaryOptions};
+    ///
+    /// let mut model = Model::new();
+    /// let rim = model.insert("rim", Circle::new(Frame::WORLD, 2.0, (0.0, std::f64::consts::TAU))?.to_nurbs()?)?;
+    /// let found = model.stationary_points(rim, DVec3::new(0.5, 0.3, 1.0), &StationaryOptions::default())?;
+    /// let kinds: Vec<_> = found.points.iter().map(|point| point.kind).collect();
+    /// assert_eq!(kinds, [Some(Extremum::Minimum), Some(Extremum::Maximum)]);
+    /// # Ok::<(), Box<dyn std::error::Error>>(())
+    /// ```
+    ///
+    /// # Errors
+    ///
+    /// An unknown id; a coordinate that is no finite number or beyond 1e75; a tolerance that is negative or not a number.
+    pub fn stationary_points(
+        &self,
+        id: EntityId,
+        p: DVec3,
+        options: &StationaryOptions,
+    ) -> Result<StationaryPoints, QueryError> {
+        self.prepared(id)?.stationary_points(p, options, &mut Scratch::default())
     }
 
     /// An entity made ready for many queries by one thread, with the working memory that they reuse.

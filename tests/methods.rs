@@ -13,12 +13,13 @@ use common::judgement::{is_certified, is_false_bound, rounding};
 use perpend::{Method, Model, QueryOptions};
 
 /// A method, and one row of how many is asked of each set in a short run.
-const METHODS: [(Method, usize); 5] = [
+const METHODS: [(Method, usize); 6] = [
     (Method::Analytic, 9),
     (Method::Hierarchy, 9),
     (Method::Wave, 61),
     (Method::Exclusion, 17),
     (Method::ControlPolygon, 61),
+    (Method::Bernstein, 241),
 ];
 
 /// The rows that are asked; the first of each entity always.

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use clap::{Args, Parser, Subcommand, value_parser};
-use perpend::{EntityId, Method, Model, ReadError, Trust};
+use perpend::{DVec3, EntityId, Method, Model, ReadError, Trust};
 
 use crate::names;
 
@@ -46,6 +46,8 @@ pub(crate) enum Command {
     Impact(ImpactArguments),
     /// Project points: the nearest point of an entity, or of the whole model, to each
     Project(ProjectArguments),
+    /// Find all stationary points of the distance from a point to an entity
+    Stationary(StationaryArguments),
 }
 
 /// What happens to knowledge of the model that is false.
@@ -221,6 +223,30 @@ pub(crate) struct ImpactArguments {
     pub(crate) json: bool,
 }
 
+/// Find all stationary points of the distance from a point to an entity: minima, maxima and saddles.
+///
+/// Every stationary point is found: each part of the entity is proven to hold none, or belongs to a point or to a continuum that is listed.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct StationaryArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    /// The entity
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: EntityId,
+    /// The point from which distances are taken
+    #[arg(long, value_name = "X,Y,Z", value_parser = point, allow_hyphen_values = true)]
+    pub(crate) point: DVec3,
+    /// Points closer than this are not told apart, in the model's unit; without it, 1e-6 times the entity's size
+    #[arg(long, value_name = "T", value_parser = length, allow_negative_numbers = true)]
+    pub(crate) tolerance: Option<f64>,
+    /// Write JSON, for programs
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+}
+
 /// Project points: the nearest point of an entity, or of the whole model, to each.
 ///
 /// POINTS is CSV with a header that names the columns `x,y,z`, or `entity,x,y,z` where each row names its entity by id.
@@ -287,6 +313,14 @@ fn entity_id(text: &str) -> Result<EntityId, String> {
     text.parse()
         .map(EntityId::new)
         .map_err(|_| "entities are called by id, a whole number: see `perpend show`".to_owned())
+}
+
+fn point(text: &str) -> Result<DVec3, String> {
+    let numbers: Vec<f64> = text.split(',').filter_map(|number| number.trim().parse().ok()).collect();
+    match numbers[..] {
+        [x, y, z] if text.split(',').count() == 3 && [x, y, z].iter().all(|x| x.is_finite()) => Ok(DVec3::new(x, y, z)),
+        _ => Err("it is three finite numbers with commas between them: 12.5,0,-3".to_owned()),
+    }
 }
 
 fn length(text: &str) -> Result<f64, String> {

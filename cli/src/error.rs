@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use perpend::{EditError, EntityId, Model, ReadError, ReplayError, WriteError};
+use perpend::{EditError, EntityId, Model, QueryError, ReadError, ReplayError, WriteError};
 
 use crate::project::points::PointsError;
 
@@ -23,6 +23,8 @@ pub(crate) enum CommandError {
     Points { name: String, problem: PointsError },
     #[error("{}: {source}", model.display())]
     Edit { model: PathBuf, source: EditError },
+    #[error(transparent)]
+    Query(#[from] QueryError),
     #[error(transparent)]
     Output(#[from] WriteError),
     #[error("cannot write to standard output: {0}")]

@@ -12,6 +12,7 @@ mod project;
 mod replay;
 mod report;
 mod show;
+mod stationary;
 
 use std::process::ExitCode;
 
@@ -34,6 +35,7 @@ fn main() -> ExitCode {
         Command::Replay(arguments) => replay::run(&arguments),
         Command::Impact(arguments) => impact::run(&arguments),
         Command::Project(arguments) => project::run(&arguments),
+        Command::Stationary(arguments) => stationary::run(&arguments),
     };
     match done {
         Ok(code) => code,

@@ -1,10 +1,10 @@
 //! Names of enum values in output and on the command line.
 
-use perpend::{Effect, EntityId, Method, Model, Multiplicity, Place, Relation};
+use perpend::{Certainty, Effect, EntityId, Extremum, Method, Model, Multiplicity, Place, Relation};
 
 /// All methods that can be asked for.
-pub(crate) const METHODS: [Method; 5] =
-    [Method::Analytic, Method::Hierarchy, Method::Wave, Method::Exclusion, Method::ControlPolygon];
+pub(crate) const METHODS: [Method; 6] =
+    [Method::Analytic, Method::Hierarchy, Method::Wave, Method::Exclusion, Method::ControlPolygon, Method::Bernstein];
 
 pub(crate) fn method(method: Method) -> &'static str {
     match method {
@@ -13,6 +13,7 @@ pub(crate) fn method(method: Method) -> &'static str {
         Method::Wave => "wave",
         Method::Exclusion => "exclusion",
         Method::ControlPolygon => "control-polygon",
+        Method::Bernstein => "bernstein",
     }
 }
 
@@ -68,4 +69,19 @@ pub(crate) fn relation(relation: &Relation) -> String {
 /// An entity's id and name.
 pub(crate) fn entity(model: &Model, id: EntityId) -> String {
     model.entity(id).map_or_else(|| id.to_string(), |entity| format!("{id} {:?}", entity.name()))
+}
+
+pub(crate) fn extremum(kind: Extremum) -> &'static str {
+    match kind {
+        Extremum::Minimum => "minimum",
+        Extremum::Maximum => "maximum",
+        Extremum::Saddle => "saddle",
+    }
+}
+
+pub(crate) fn certainty(certainty: Certainty) -> &'static str {
+    match certainty {
+        Certainty::One => "one",
+        Certainty::Undecided => "undecided",
+    }
 }

@@ -76,6 +76,8 @@ pub enum Method {
     Exclusion,
     /// The same subdivision with the control-polygon test of Ma and Hewitt 2003, the comparator of Selimovic's tables.
     ControlPolygon,
+    /// All stationary points by a quadtree over the squared gradient in Bernstein form (Xu et al. 2014).
+    Bernstein,
 }
 
 /// The nearest point of an entity to a query point, with its proof.

@@ -2,6 +2,7 @@
 
 mod analytic;
 mod answer;
+mod bernstein;
 mod closed_form;
 mod dispatch;
 mod exclusion;
@@ -13,6 +14,7 @@ mod prepared;
 mod query;
 mod scratch;
 mod solver;
+mod stationary;
 mod statistics;
 mod tree;
 mod wave;
@@ -22,6 +24,7 @@ pub use plan::{Decomposition, Plan, Reason, Settings};
 pub use prepared::Prepared;
 pub use query::{NewtonTolerances, Query, QueryError, QueryOptions};
 pub use scratch::Scratch;
+pub use stationary::{Certainty, Extremum, StationaryOptions, StationaryPoint, StationaryPoints};
 pub use statistics::{Statistics, Work};
 pub use tree::{BoxTree, Candidate};
 pub use wave::{DecompositionCost, Steps, Wave, WaveSettings, WaveTrace};

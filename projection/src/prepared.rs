@@ -7,17 +7,22 @@ use perpend_kernel::Definition;
 use perpend_knowledge::Record;
 
 use crate::answer::{Continuum, FootPoint, Method, Ties};
+use crate::bernstein::{Bernstein, LocalPoint, LocalSet};
 use crate::closed_form::ClosedForm;
 use crate::dispatch::{Dispatched, dispatch};
 use crate::exclusion::{Criteria, Exclusion};
 use crate::foot::Reader;
-use crate::hierarchy::{Hierarchy, TieSet};
+use crate::hierarchy::{Frame, Hierarchy, TieSet};
 use crate::landmarks::Landmarks;
 use crate::plan::Plan;
-use crate::query::Query;
+use crate::query::{Query, QueryError, QueryOptions};
 use crate::scratch::Scratch;
-use crate::solver::{Proposer, Solved, Solver};
+use crate::solver::{Proposer, Solution, Solved, Solver, Tie, unit_normal};
+use crate::stationary::{StationaryOptions, StationaryPoint, StationaryPoints, parameter_box};
 use crate::wave::{Wave, WaveSettings};
+
+/// Stationary points closer than this share of the entity's size are not told apart unless a query asks for it.
+const DEFAULT_TOLERANCE: f64 = 1e-6;
 
 /// An entity made ready for queries: built once, immutable, shared by threads.
 #[derive(Debug)]
@@ -34,6 +39,7 @@ pub struct Prepared {
     wave: OnceLock<Wave>,
     exclusion: OnceLock<Exclusion>,
     control_polygon: OnceLock<Exclusion>,
+    bernstein: OnceLock<Bernstein>,
 }
 
 impl Prepared {
@@ -56,6 +62,7 @@ impl Prepared {
             wave: OnceLock::new(),
             exclusion: OnceLock::new(),
             control_polygon: OnceLock::new(),
+            bernstein: OnceLock::new(),
         }
     }
 
@@ -137,6 +144,64 @@ impl Prepared {
         })
     }
 
+    /// All stationary points of the distance from `p`: minima, maxima and saddles, inside, on edges, creases, ends and corners.
+    ///
+    /// # Errors
+    ///
+    /// A coordinate that is no finite number or beyond 1e75; a tolerance that is negative or not a number.
+    pub fn stationary_points(
+        &self,
+        p: DVec3,
+        options: &StationaryOptions,
+        scratch: &mut Scratch,
+    ) -> Result<StationaryPoints, QueryError> {
+        options.validate()?;
+        let query = Query::new(p, QueryOptions::default())?;
+        let bernstein = self.bernstein();
+        let frame = bernstein.frame();
+        let tolerance = options.tolerance.unwrap_or(DEFAULT_TOLERANCE * self.size) * frame.scale;
+        let local = frame.enter(query.point);
+        let work = &mut scratch.statistics.proof;
+        let LocalSet { points, continua, complete } = bernstein.stationary(local, tolerance, options.work, work);
+        scratch.statistics.queries += 1;
+        Ok(StationaryPoints {
+            points: points.iter().map(|point| self.stationary_point(point, local, frame)).collect(),
+            continua: continua
+                .into_iter()
+                .map(|boxes| Continuum { boxes: boxes.into_iter().map(parameter_box).collect() })
+                .collect(),
+            complete,
+        })
+    }
+
+    fn stationary_point(&self, found: &LocalPoint, p: DVec3, frame: &Frame) -> StationaryPoint {
+        let [u, v] = found.at;
+        let offset = (found.point - p) / frame.scale;
+        let normal = match &*self.definition {
+            Definition::NurbsCurve(_) => DVec3::ZERO,
+            Definition::NurbsSurface(surface) => {
+                let mut d = [DVec3::ZERO; 4];
+                surface.derivatives(u, v, 1, &mut d);
+                unit_normal(d[2], d[1])
+            }
+        };
+        let (distance, tie) = (offset.length(), Tie::None);
+        let solution = Solution { u, v, point: None, distance, lower_bound: 0.0, normal, offset, tie };
+        let foot = self.reader().answer(&solution, Method::Bernstein);
+        // a point of a seam is given at the lower parameter, and so is its box
+        let moved = |d: usize, to: f64| if to == found.at[d] { found.range[d] } else { (to, to) };
+        StationaryPoint {
+            parameter: foot.parameter,
+            point: foot.point,
+            distance: foot.distance,
+            kind: found.kind,
+            place: foot.place,
+            descends_inward: found.descends_inward,
+            range: parameter_box([moved(0, foot.parameter.u()), moved(1, foot.parameter.v().unwrap_or(v))]),
+            certainty: found.certainty,
+        }
+    }
+
     /// The solver of this method, where it is one that only proposes.
     fn proposer(&self, method: Method) -> Option<&dyn Proposer> {
         match method {
@@ -144,11 +209,16 @@ impl Prepared {
             Method::Wave => Some(self.wave()),
             Method::Exclusion => Some(self.subdivision(&self.exclusion, Criteria::Selimovic)),
             Method::ControlPolygon => Some(self.subdivision(&self.control_polygon, Criteria::ControlPolygon)),
+            Method::Bernstein => Some(self.bernstein()),
         }
     }
 
     fn subdivision<'a>(&self, cell: &'a OnceLock<Exclusion>, criteria: Criteria) -> &'a Exclusion {
         cell.get_or_init(|| Exclusion::new(&self.definition, criteria))
+    }
+
+    fn bernstein(&self) -> &Bernstein {
+        self.bernstein.get_or_init(|| Bernstein::new(&self.definition, &self.landmarks))
     }
 
     fn hierarchy(&self) -> &Hierarchy {

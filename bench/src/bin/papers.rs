@@ -1,4 +1,4 @@
-//! The tables of the papers, measured anew: `papers [selimovic|few|piegl]`, all of them without a name; with `--quick`, Piegl's last table is shorter.
+//! The tables of the papers, measured anew: `papers [selimovic|few|piegl|xu]`, all of them without a name; with `--quick`, Piegl's last table is shorter.
 //!
 //! The test corpora are read from `tests/data`, or from the folder that the environment variable `PERPEND_CORPUS` names.
 
@@ -10,6 +10,8 @@ mod few;
 mod piegl;
 #[path = "../papers/selimovic.rs"]
 mod selimovic;
+#[path = "../papers/xu.rs"]
+mod xu;
 
 type Failure = Box<dyn std::error::Error>;
 
@@ -17,7 +19,8 @@ type Failure = Box<dyn std::error::Error>;
 type Print = fn() -> Result<(), Failure>;
 
 /// The papers by their names on the command line; `few` is a question that Selimovic's raises: is it the choice for a few queries?
-const PAPERS: [(&str, Print); 3] = [("selimovic", selimovic::print), ("few", few::print), ("piegl", piegl::print)];
+const PAPERS: [(&str, Print); 4] =
+    [("selimovic", selimovic::print), ("few", few::print), ("piegl", piegl::print), ("xu", xu::print)];
 
 fn main() -> Result<(), Failure> {
     let wanted: Vec<String> = std::env::args().skip(1).filter(|a| a != "--quick").collect();

@@ -9,4 +9,5 @@ mod learn;
 mod output;
 mod prepare;
 mod project;
+mod stationary;
 mod workshop;
