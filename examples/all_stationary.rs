@@ -4,7 +4,7 @@
 use std::error::Error;
 use std::path::Path;
 
-use perpend::{DVec3, Extremum, Model, StationaryOptions};
+use perpend::{DVec3, Definition, Extremum, Model, StationaryOptions};
 
 fn main() -> Result<(), Box<dyn Error>> {
     let model = Model::read(Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/workshop.ron"))?;
@@ -24,9 +24,11 @@ fn show(model: &Model, name: &str, place: &str, p: DVec3) -> Result<(), Box<dyn 
         let inward = if point.descends_inward { ", falling inward" } else { "" };
         println!("    {kind} at {:.6} mm, {:?}{inward}, {:?}", point.distance, point.place, point.certainty);
     }
-    let counted = found.points.iter().filter(|point| !point.descends_inward);
-    let sum: i32 = counted.map(|point| if point.kind == Some(Extremum::Saddle) { -1 } else { 1 }).sum();
-    println!("    minima less saddles plus maxima, those that fall inward apart: {sum}");
+    if matches!(**entity.definition(), Definition::NurbsSurface(_)) {
+        let counted = found.points.iter().filter(|point| !point.descends_inward);
+        let sum: i32 = counted.map(|point| if point.kind == Some(Extremum::Saddle) { -1 } else { 1 }).sum();
+        println!("    minima less saddles plus maxima, those that fall inward apart: {sum}");
+    }
     for continuum in &found.continua {
         println!("    a continuum of {} boxes", continuum.boxes.len());
     }

@@ -46,7 +46,7 @@ pub struct StationaryPoint {
     /// What is particular about its place.
     pub place: Place,
     /// On an edge, end or corner of an open entity: the distance falls when one leaves it into the entity. Without those, the number of minima less
-    /// that of saddles plus that of maxima is Euler's characteristic of the entity.
+    /// that of saddles plus that of maxima is Euler's characteristic of a surface (of a curve, the number of minima less that of maxima).
     pub descends_inward: bool,
     /// The box in which it lies.
     pub range: ParameterBox,
