@@ -9,7 +9,8 @@ use common::corpus;
 use common::disguise::{disguised, moved};
 use common::kinds::{at, distance, gap, name, turn};
 use common::random::Random;
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
+use perpend::kernel::{extrusion, revolution, ruled};
 use perpend::knowledge::{default_tolerance, prove, recognise};
 use perpend::{
     Circle, Cone, Cylinder, Definition, Direction, Ellipse, Frame, IntoDefinition, Item, Kind, Line, Model, NurbsCurve,
@@ -292,4 +293,104 @@ fn an_arc_is_refused_where_its_range_stops_short_or_goes_too_far() {
         let refuted = prove(&stated(sweep), &definition, tolerance).expect_err("another arc");
         assert!(refuted.deviation().is_some_and(|off| off >= 1e-3), "{sweep:?}: {refuted}");
     }
+}
+
+/// A wavy profile in the half plane from the third axis, away from it, as a curve in space.
+fn profile(random: &mut Random, degree: usize) -> NurbsCurve {
+    let n = degree + 4;
+    let points = (0..n).map(|k| DVec3::new(2.0 + random.between(-0.6, 0.6), 0.0, k as f64 * 0.7)).collect();
+    let weights = (0..n).map(|_| random.between(0.5, 2.0)).collect();
+    let inner = (1..4).map(|k| f64::from(k) / 4.0);
+    let knots = std::iter::repeat_n(0.0, degree + 1).chain(inner).chain(std::iter::repeat_n(1.0, degree + 1)).collect();
+    NurbsCurve::new(degree, knots, points, Some(weights)).expect("valid")
+}
+
+#[test]
+fn free_profiles_that_are_swept_are_recognised_with_their_sweep_and_refused_with_another() {
+    let mut random = Random::new(41);
+    for degree in [2, 3, 5] {
+        for scale in [1e-3, 1.0, 1e4] {
+            let [x, y, z] = random.frame();
+            let place = DAffine3 {
+                matrix3: glam::DMat3::from_cols(scale * x, scale * y, scale * z),
+                translation: scale * DVec3::new(3.0, -7.0, 2.0),
+            };
+            let flat = profile(&mut random, degree);
+            let curve = flat.transformed(&place).expect("a similarity");
+            let vector = scale * (0.3 * x + 4.0 * y - 0.2 * z);
+            let swept = Definition::from(extrusion(&curve, vector).expect("valid"));
+            let item = recognised(&swept);
+            let Kind::Extrusion { vector: found, along } = item.value else { panic!("{degree}, {scale}: {item:?}") };
+            assert!(along == Direction::V && found.distance(vector) <= 1e-12 * swept.size(), "{found}");
+            refused_beyond(&swept, &Kind::Extrusion { vector: 1.01 * vector, along }, 0.01 * vector.length());
+
+            let (centre, turned_by) = (place.translation, random.between(0.1, TAU));
+            let vase = Definition::from(revolution(&curve, centre, z, turned_by).expect("valid"));
+            let item = recognised(&vase);
+            let Kind::Revolution { origin, axis, sweep, angular } = item.value else {
+                panic!("{degree}, {scale}: {item:?}")
+            };
+            let off = [(origin - centre).cross(z).length(), scale * axis.cross(z).length()];
+            assert!(off.iter().all(|off| *off <= 1e-9 * vase.size()), "{off:?}");
+            assert!((sweep - turned_by).abs() <= 1e-9, "{sweep}, {turned_by}");
+            let moved = Kind::Revolution { origin: origin + 0.01 * scale * x, axis, sweep, angular };
+            refused_beyond(&vase, &moved, 1e-4 * scale);
+
+            let slant = DAffine3::from_axis_angle(x, 0.4) * DAffine3::from_translation(scale * (5.0 * y + z));
+            let other = profile(&mut random, degree).transformed(&place).and_then(|c| c.transformed(&slant));
+            let wall = Definition::from(ruled(&curve, &other.expect("rigid")).expect("valid"));
+            let item = recognised(&wall);
+            assert_eq!(item.value, Kind::Ruled { ruling: Direction::V }, "{item:?}");
+            assert!(gap(&item) < 1e-12 * wall.size(), "{item:?}");
+            refused_beyond(&wall, &Kind::Ruled { ruling: Direction::U }, 1e-3 * scale);
+        }
+    }
+}
+
+/// A false class is refused with a measured deviation of at least `off`.
+fn refused_beyond(definition: &Definition, lie: &Kind, off: f64) {
+    let refuted = prove(lie, definition, default_tolerance(definition)).expect_err("a lie");
+    let measured = refuted.deviation().unwrap_or_else(|| panic!("{lie:?}: {refuted}"));
+    assert!(measured >= 0.9 * off, "{lie:?}: {measured:e}, {off:e}: {refuted}");
+}
+
+#[test]
+fn almost_swept_surfaces_stay_what_they_are() {
+    let mut random = Random::new(43);
+    let (curve, other) = (profile(&mut random, 3), profile(&mut random, 3));
+    let slant = DAffine3::from_axis_angle(DVec3::X, 0.4) * DAffine3::from_translation(DVec3::new(0.0, 5.0, 1.0));
+    let other = other.transformed(&slant).expect("rigid");
+    let surfaces = [
+        extrusion(&curve, DVec3::new(0.3, 4.0, -0.2)).expect("valid"),
+        revolution(&curve, DVec3::ZERO, DVec3::Z, 4.0).expect("valid"),
+        ruled(&curve, &other).expect("valid"),
+    ];
+    for surface in surfaces {
+        // an inner row of control points along the sweep makes room for a bump
+        let surface = surface.elevate_degree(Direction::V, 1).expect("within the highest degree");
+        for exponent in 3..=10 {
+            let size = Definition::from(surface.clone()).size();
+            let bump = 10.0_f64.powi(-exponent) * size;
+            let (p, q) = surface.degree();
+            let mut points = surface.control_points().to_vec();
+            let at = 3 * surface.columns() + 1;
+            points[at] += bump * DVec3::new(0.6, 0.48, 0.64);
+            let rows = points.chunks(surface.columns()).map(<[DVec3]>::to_vec).collect();
+            let weights = surface.weights().map(|w| w.chunks(surface.columns()).map(<[f64]>::to_vec).collect());
+            let knots = [Direction::U, Direction::V].map(|d| surface.knots(d).as_slice().to_vec());
+            let [u, v] = knots;
+            let bumpy = perpend::NurbsSurface::new((p, q), (u, v), rows, weights).expect("valid");
+            // what the bump lifts, seen at points: a lower bound of what the surface is off its straight rulings or arcs
+            let lifted = points_of(&bumpy).zip(points_of(&surface)).map(|(a, b)| a.distance(b)).fold(0.0, f64::max);
+            let item = recognised(&Definition::from(bumpy));
+            if item.value != Kind::FreeForm {
+                assert!(lifted <= gap(&item), "1e-{exponent}: {item:?}, lifted {lifted:e}");
+            }
+            assert!(exponent >= 9 || item.value == Kind::FreeForm, "1e-{exponent}: {item:?}");
+        }
+    }
+}
+
+fn points_of(surface: &perpend::NurbsSurface) -> impl Iterator<Item = DVec3> + '_ {
+    (0..=20).flat_map(move |i| (0..=20).map(move |j| surface.point(f64::from(i) / 20.0, f64::from(j) / 20.0)))
 }

@@ -23,7 +23,7 @@ pub enum Refuted {
     /// The definition is farther from the stated shape than was asked.
     #[error("{}", deviates(*measured, *bound, *tolerance))]
     Deviates {
-        /// The largest distance from the shape that was met at points of the definition; none where the class has no closed form.
+        /// The largest distance from the shape that was met at points of the definition; none where the class is of other definitions.
         measured: Option<f64>,
         /// The proven bound of the deviation; none where the definition is not built as such a shape is.
         bound: Option<f64>,
@@ -47,6 +47,10 @@ impl Refuted {
 
 fn deviates(measured: Option<f64>, bound: Option<f64>, tolerance: f64) -> String {
     let far = match (measured, bound) {
+        (Some(measured), Some(bound)) if measured <= tolerance => format!(
+            "points of the definition are within {measured:.3e} of it, but it is proven within {bound:.3e} only: its ranges end \
+             elsewhere than the definition, or that is not built as one; this is"
+        ),
         (Some(measured), Some(bound)) => {
             format!("the definition is {measured:.3e} from it (proven: at most {bound:.3e})")
         }
