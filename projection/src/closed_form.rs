@@ -35,7 +35,7 @@ impl ClosedForm {
 
     /// The definition at a proposal's parameters, seen from the query.
     fn evaluate(&self, query: &Query, proposal: &Proposal) -> Solution {
-        let &Proposal { mut u, mut v, lower_bound, tie } = proposal;
+        let &Proposal { mut u, mut v, distance: promised, lower_bound, tie } = proposal;
         let ulp = f64::EPSILON * self.reach;
         let (point, normal) = match &*self.definition {
             Definition::NurbsCurve(curve) if self.analytic.is_elliptic() => {
@@ -47,7 +47,10 @@ impl ClosedForm {
             Definition::NurbsSurface(surface) => {
                 let mut d = [DVec3::ZERO; 4];
                 surface.derivatives(u, v, 1, &mut d);
-                if let Some(better) = polished_on(surface, (u, v), &d, query.point, ulp) {
+                // a step is tried only where the point is farther than the shape: most are not
+                if d[0].distance(query.point) > promised + 2.0 * ulp
+                    && let Some(better) = polished_on(surface, (u, v), &d, query.point, ulp)
+                {
                     ((u, v), d) = better;
                 }
                 let border = self.on_border(surface, u, v);

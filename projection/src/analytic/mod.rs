@@ -100,6 +100,8 @@ struct Pair {
 pub(crate) struct Proposal {
     pub u: f64,
     pub v: f64,
+    /// To the shape, in the model's unit: what the definition has at the foot but for its deviation from the shape.
+    pub distance: f64,
     /// Proven: no point of the definition is nearer, in the model's unit.
     pub lower_bound: f64,
     pub tie: Tie,
@@ -162,7 +164,8 @@ impl Analytic {
             Shape::Parallelogram(parallelogram) => parallelogram.foot(q, asked),
         };
         let lower = distance - unproven - self.deviation - rounding;
-        Some(Proposal { u: at.x, v: at.y, lower_bound: self.axes.length(lower.max(0.0)), tie })
+        let (distance, lower_bound) = (self.axes.length(distance), self.axes.length(lower.max(0.0)));
+        Some(Proposal { u: at.x, v: at.y, distance, lower_bound, tie })
     }
 }
 
