@@ -6,9 +6,11 @@ use perpend_kernel::{Definition, EntityId};
 use perpend_knowledge::{Basis, Cleaning, Item, PreparedDefinition, Record, clean, displacement, prove, purge};
 
 use crate::edit::EditError;
+use crate::entity::Entity;
 use crate::model::Model;
 use crate::original::{Original, purges};
-use crate::rebuild::Staged;
+use crate::rebuild::{Staged, failed, remade};
+use crate::standing::{Standing, agrees};
 
 /// The consent of an application to changing an entity, and by how much.
 ///
@@ -109,9 +111,12 @@ impl Model {
 
     /// Gives an entity that was purged its original again, bit for bit, with what was known of that. The revision rises.
     ///
+    /// An entity that an operation had made, and whose inputs have changed since, is made anew instead: a purged entity does not
+    /// follow its inputs, and its original is what they gave then.
+    ///
     /// # Errors
     ///
-    /// An unknown id; no original is kept; an entity that is made of this one and cannot be built.
+    /// An unknown id; no original is kept; an entity that is made of this one, or this one of its inputs, and cannot be built.
     pub fn restore(&mut self, id: EntityId) -> Result<(), EditError> {
         let entity = &self.entities[self.position(id)?];
         let original = entity.original.clone().ok_or(EditError::NoOriginal { id })?;
@@ -123,8 +128,34 @@ impl Model {
                 record.classification.get_or_insert_default().kind = Some(kind);
             }
         }
-        record.revision = record.revision.saturating_add(1);
-        self.become_prepared(id, original.definition, record, None)
+        let (definition, record) = match self.made_today(id, &original.definition, &record)? {
+            Some(today) => today,
+            None => {
+                record.revision = record.revision.saturating_add(1);
+                (original.definition, record)
+            }
+        };
+        self.become_prepared(id, definition, record, None)
+    }
+
+    /// What the steps that had made an original give today, with the record of that; none where that is the original still, or
+    /// they had not made it.
+    fn made_today(
+        &self,
+        id: EntityId,
+        original: &Arc<Definition>,
+        record: &Record,
+    ) -> Result<Option<(Arc<Definition>, Record)>, EditError> {
+        let was = Entity::with(id, String::new(), Arc::clone(original), Some(record.clone()));
+        let Some(making) = record.making().filter(|_| Standing::of(&was, self) == Standing::Made) else {
+            return Ok(None);
+        };
+        let built = making.run(self).map_err(|error| EditError::Rebuild(Box::new(failed(id, id, error))))?;
+        if agrees(&built.definition, original) {
+            return Ok(None);
+        }
+        let record = remade(record, &making, &built, self);
+        Ok(Some((Arc::new(built.definition), record)))
     }
 
     /// Gives up the original of an entity that was purged: it is now what it is. The revision rises.

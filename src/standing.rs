@@ -50,6 +50,7 @@ fn notes(making: &Making<'_>, entity: &Entity) -> bool {
     }
 }
 
-fn agrees(replayed: &Definition, definition: &Definition) -> bool {
+/// Whether what was built again is a definition, up to [`default_tolerance`].
+pub(crate) fn agrees(replayed: &Definition, definition: &Definition) -> bool {
     deviation(replayed, definition).proven <= default_tolerance(definition)
 }

@@ -5,10 +5,11 @@ mod common;
 
 use common::random::Random;
 use glam::DVec3;
+use perpend::kernel::Spacing;
 use perpend::knowledge::displacement;
 use perpend::{
     Basis, Circle, Cleaning, Consent, Definition, EditError, Entity, EntityId, Frame, Item, Kind, Model, NurbsCurve,
-    Trust,
+    Operation, Trust,
 };
 
 /// A wave with more control points than it needs.
@@ -137,6 +138,52 @@ fn purging_keeps_the_original_and_restoring_gives_it_back() {
         model.to_ron().replace("            knowledge: Some((\n                revision: 2,\n            )),\n", "");
     assert_eq!(text, before);
     assert_eq!(model.restore(WAVE), Err(EditError::NoOriginal { id: WAVE }));
+}
+
+#[test]
+fn purging_and_restoring_what_is_made_of_each_other_gives_all_back() {
+    let mut model = Model::new();
+    let points = (0..20).map(|k| DVec3::new(5.0 + (0.8 * f64::from(k)).sin(), 0.0, f64::from(k))).collect();
+    let through = Operation::Interpolation { degree: (3, 0), points, columns: 0, spacing: Spacing::ChordLength };
+    let profile = model.make("profile", through, &[]).expect("valid");
+    let turned = Operation::Revolve { origin: DVec3::ZERO, axis: DVec3::Z, angle: 6.0 };
+    let vase = model.make("vase", turned, &[profile]).expect("valid");
+    let before = model.clone();
+    let ids = [profile, vase];
+    for order in [ids, [vase, profile]] {
+        for back in [ids, [vase, profile]] {
+            let mut model = before.clone();
+            for id in order {
+                assert!(!model.purge(id, Consent::within(0.5)).expect("an entity").steps.is_empty());
+            }
+            let mut model = through_a_file(&model);
+            for id in back {
+                model.restore(id).expect("an original");
+                assert_eq!(model.replay(vase).expect("made").is_overridden, entity(&model, vase).original().is_some());
+            }
+            for id in ids {
+                assert_eq!(entity(&model, id).definition(), entity(&before, id).definition(), "{order:?}, {back:?}");
+                assert_eq!(model.replay(id).expect("made").drift.proven, 0.0);
+            }
+        }
+    }
+}
+
+#[test]
+fn a_purged_entity_is_restored_to_what_its_inputs_give_today() {
+    let mut model = Model::new();
+    let circle =
+        |radius: f64| Operation::CircleByCentre { centre: DVec3::ZERO, axis: DVec3::Z, radius, xdir: Some(DVec3::X) };
+    let rim = model.make("rim", circle(2.0), &[]).expect("valid");
+    let pipe = model.make("pipe", Operation::Extrude { vector: DVec3::Z }, &[rim]).expect("valid");
+    model.purge(pipe, Consent::within(2.5)).expect("an entity");
+    assert!(entity(&model, pipe).original().is_some());
+    assert_eq!(model.edit(rim, circle(3.0)), Ok(vec![rim]), "what was purged is kept");
+    model.restore(pipe).expect("an original");
+    assert_eq!(model.replay(pipe).expect("made").drift.proven, 0.0);
+    let foot = model.project(pipe, DVec3::new(4.0, 0.0, 0.5)).expect("finite");
+    assert!((foot.distance - 1.0).abs() < 1e-9);
+    assert_eq!(model.edit(rim, circle(1.0)), Ok(vec![rim, pipe]));
 }
 
 #[test]
