@@ -93,11 +93,7 @@ impl From<False> for EntityError {
 
 impl Entity {
     pub(crate) fn new(id: EntityId, name: String, definition: Definition, record: Option<Record>) -> Self {
-        Self::with(id, name, Arc::new(definition), record)
-    }
-
-    pub(crate) fn with(id: EntityId, name: String, definition: Arc<Definition>, record: Option<Record>) -> Self {
-        Self { id, name, definition, record, original: None, prepared: OnceLock::new() }
+        Self { id, name, definition: Arc::new(definition), record, original: None, prepared: OnceLock::new() }
     }
 
     /// The id by which the model's queries call it.

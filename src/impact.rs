@@ -41,7 +41,7 @@ impl Model {
     /// would be rebuilt, each with whether it would be; then those that only refer to one that changes, in the order of the
     /// model.
     ///
-    /// Nothing is built: whether a rebuild would succeed, the edit itself shows, which leaves the model as it was where not.
+    /// Whether a rebuild would succeed, the edit itself shows, which leaves the model as it was where not.
     ///
     /// # Errors
     ///

@@ -6,11 +6,10 @@ use perpend_kernel::{Definition, EntityId};
 use perpend_knowledge::{Basis, Cleaning, Item, PreparedDefinition, Record, clean, displacement, prove, purge};
 
 use crate::edit::EditError;
-use crate::entity::Entity;
 use crate::model::Model;
 use crate::original::{Original, purges};
-use crate::rebuild::{Staged, failed, remade};
-use crate::standing::{Standing, agrees};
+use crate::rebuild::{Staged, remade};
+use crate::standing::{agrees, notes};
 
 /// The consent of an application to changing an entity, and by how much.
 ///
@@ -116,7 +115,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// An unknown id; no original is kept; an entity that is made of this one, or this one of its inputs, and cannot be built.
+    /// An unknown id; no original is kept; an entity that is made of this one and cannot be built.
     pub fn restore(&mut self, id: EntityId) -> Result<(), EditError> {
         let entity = &self.entities[self.position(id)?];
         let original = entity.original.clone().ok_or(EditError::NoOriginal { id })?;
@@ -128,7 +127,7 @@ impl Model {
                 record.classification.get_or_insert_default().kind = Some(kind);
             }
         }
-        let (definition, record) = match self.made_today(id, &original.definition, &record)? {
+        let (definition, record) = match self.made_today(&original.definition, &record) {
             Some(today) => today,
             None => {
                 record.revision = record.revision.saturating_add(1);
@@ -139,23 +138,15 @@ impl Model {
     }
 
     /// What the steps that had made an original give today, with the record of that; none where that is the original still, or
-    /// they had not made it.
-    fn made_today(
-        &self,
-        id: EntityId,
-        original: &Arc<Definition>,
-        record: &Record,
-    ) -> Result<Option<(Arc<Definition>, Record)>, EditError> {
-        let was = Entity::with(id, String::new(), Arc::clone(original), Some(record.clone()));
-        let Some(making) = record.making().filter(|_| Standing::of(&was, self) == Standing::Made) else {
-            return Ok(None);
-        };
-        let built = making.run(self).map_err(|error| EditError::Rebuild(Box::new(failed(id, id, error))))?;
+    /// they had not made it, or cannot be run.
+    fn made_today(&self, original: &Definition, record: &Record) -> Option<(Arc<Definition>, Record)> {
+        let making = record.making().filter(|making| notes(making, original))?;
+        let built = making.run(self).ok()?;
         if agrees(&built.definition, original) {
-            return Ok(None);
+            return None;
         }
         let record = remade(record, &making, &built, self);
-        Ok(Some((Arc::new(built.definition), record)))
+        Some((Arc::new(built.definition), record))
     }
 
     /// Gives up the original of an entity that was purged: it is now what it is. The revision rises.

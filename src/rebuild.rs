@@ -143,7 +143,7 @@ impl<'a> Staged<'a> {
     }
 }
 
-pub(crate) fn failed(edited: EntityId, id: EntityId, error: MakingError) -> RebuildError {
+fn failed(edited: EntityId, id: EntityId, error: MakingError) -> RebuildError {
     match error {
         MakingError::Build(source) => RebuildError::Build { edited, id, source: Box::new(source) },
         MakingError::UnknownEntity { id: input } => RebuildError::UnknownInput { id, input },

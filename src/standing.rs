@@ -19,35 +19,21 @@ pub(crate) enum Standing {
 }
 
 impl Standing {
-    /// A step that notes the entity's definition made it. Where none does, the steps are run: what they give decides, and a
-    /// difference below [`default_tolerance`] counts as none.
+    /// The steps are run: what they give decides, and a difference below [`default_tolerance`] counts as none. What the record notes
+    /// of that is not believed: a file can state it falsely, and an edit would lose a definition that its steps did not make.
     pub(crate) fn of(entity: &Entity, definitions: &impl Definitions) -> Self {
         let Some(making) = entity.record.as_ref().and_then(Record::making) else { return Self::Unmade };
-        let is_noted = notes(&making, entity);
-        if is_noted && making.runs() {
-            return Self::Made;
-        }
         match making.run(definitions) {
             Err(error) => Self::Reference(error),
-            Ok(_) if is_noted => Self::Made,
             Ok(built) if agrees(&built.definition, &entity.definition) => Self::Made,
             Ok(_) => Self::Overridden,
         }
     }
 }
 
-/// Whether the record notes that the steps made the entity's definition.
-fn notes(making: &Making<'_>, entity: &Entity) -> bool {
-    let hash = entity.definition.fingerprint();
-    match (making.first, &entity.record) {
-        (None, Some(record)) => {
-            let mut edges = record.relationships.iter().filter(|edge| edge.is_of_operation());
-            edges.all(|edge| {
-                edge.checked.is_some_and(|checked| checked.of == hash && checked.deviation <= checked.tolerance)
-            })
-        }
-        _ => making.last().is_some_and(|step| step.of == Some(hash)),
-    }
+/// Whether a record notes that the last of its steps made a definition.
+pub(crate) fn notes(making: &Making<'_>, definition: &Definition) -> bool {
+    making.last().is_some_and(|step| step.of == Some(definition.fingerprint()))
 }
 
 /// Whether what was built again is a definition, up to [`default_tolerance`].

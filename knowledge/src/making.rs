@@ -105,21 +105,6 @@ impl Making<'_> {
         self.steps.last()
     }
 
-    /// Whether perpend runs the operations of all steps, whatever their inputs are; of an offset that depends on the input.
-    #[must_use]
-    pub fn runs(&self) -> bool {
-        let is_kept = |step: &Intent| {
-            matches!(
-                step.operation,
-                Operation::Approximation { .. }
-                    | Operation::Offset { .. }
-                    | Operation::ByData
-                    | Operation::Other { .. }
-            )
-        };
-        !self.steps.iter().any(is_kept)
-    }
-
     /// Whether the definition was entered as it is: running the steps has nothing to make it from.
     #[must_use]
     pub fn is_by_data(&self) -> bool {

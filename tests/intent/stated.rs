@@ -69,6 +69,22 @@ fn a_stated_intent_holds_where_its_replay_is_the_entity() {
 }
 
 #[test]
+fn a_record_that_falsely_notes_what_made_the_entity_loses_it_no_shape() {
+    let mut model = Model::new();
+    let below = model.insert("rim", rim(0.0)).expect("valid");
+    let copy = model.make("copy", lifted(3.0), &[below]).expect("valid");
+    let text = model.to_ron();
+    let lie = text.replace("translation: (0.0, 0.0, 3.0)", "translation: (0.0, 0.0, 4.0)");
+    assert_ne!(lie, text);
+    let mut model = Model::from_ron(&lie).expect("the steps are not run on loading");
+    let drawn = model.entity(copy).expect("known").definition().clone();
+    assert!(model.replay(copy).expect("made").is_overridden);
+    assert_eq!(model.impact(below).expect("known")[0].effect, Effect::Overridden);
+    assert_eq!(model.edit(below, circle(1.0)), Ok(vec![below]));
+    assert_eq!(*model.entity(copy).expect("known").definition(), drawn);
+}
+
+#[test]
 fn operations_of_an_application_are_kept_as_references() {
     let made_elsewhere = || {
         let mut model = Model::new();
