@@ -1,9 +1,11 @@
 //! `perpend clean`, `perpend purge` and `perpend restore`: what definitions do not need, or hardly need, goes, and comes back;
 //! `perpend decompose`: curves in parts.
 
+use std::collections::HashSet;
 use std::fmt::Write as _;
 use std::path::Path;
 use std::process::ExitCode;
+use std::sync::Arc;
 
 use perpend::{Basis, Cleaning, Consent, Definition, EditError, Entity, EntityId, Model, Preparation};
 
@@ -84,7 +86,7 @@ fn edit(path: &Path, source: EditError) -> CommandError {
     CommandError::Edit { model: path.to_owned(), source }
 }
 
-/// Prepares the entities, and says of each that changed what was done to it.
+/// Prepares the entities, and says of each that changed what was done to it; of one that is made of those, that it was made anew.
 fn each(
     model: &mut Model,
     ids: &[EntityId],
@@ -93,7 +95,8 @@ fn each(
     prepare: impl Fn(&mut Model, EntityId) -> Result<Preparation, EditError>,
 ) -> Result<String, CommandError> {
     let mut text = String::new();
-    let mut changed = 0;
+    let definitions: Vec<_> = model.entities().iter().map(|entity| Arc::clone(entity.definition())).collect();
+    let mut changed = HashSet::new();
     for id in ids {
         let points = |model: &Model| model.entity(*id).map_or(0, |entity| entity.definition().control_points().len());
         let before = points(model);
@@ -101,7 +104,7 @@ fn each(
         if steps.is_empty() {
             continue;
         }
-        changed += 1;
+        changed.insert(*id);
         let name = model.entity(*id).map_or("", Entity::name);
         let _ = writeln!(
             text,
@@ -112,7 +115,12 @@ fn each(
             model.units().symbol(),
         );
     }
-    let _ = writeln!(text, "{}: {done} {changed} of {}", output.display(), entities(ids.len()));
+    for (entity, before) in model.entities().iter().zip(&definitions) {
+        if !changed.contains(&entity.id()) && entity.definition() != before {
+            let _ = writeln!(text, "{:>6}  {:?}: made anew of what changed", entity.id(), entity.name());
+        }
+    }
+    let _ = writeln!(text, "{}: {done} {} of {}", output.display(), changed.len(), entities(ids.len()));
     Ok(text)
 }
 

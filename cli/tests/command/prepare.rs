@@ -141,3 +141,13 @@ fn decompose_adds_the_parts_of_a_loop() {
         .run(&["decompose", "model.ron", "--entity", "2", "-o", "out.ron"])
         .ends(1, "error: model.ron: entity 2 is a surface; curves are taken apart: choose one");
 }
+
+#[test]
+fn what_is_made_of_a_prepared_entity_is_named() {
+    let workshop = Workshop::new();
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../examples/workshop.ron");
+    let run = workshop.run(&["purge", model, "--tolerance", "0.5", "--entity", "5", "-o", "purged.ron"]);
+    run.ends(0, "");
+    let anew = run.out.lines().find(|line| line.contains("corrugated sheet"));
+    assert_eq!(anew, Some("    27  \"corrugated sheet\": made anew of what changed"));
+}
