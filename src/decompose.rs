@@ -15,7 +15,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// An unknown id; a surface; a part that would be a single point. The model is as it was then.
+    /// An unknown id; a surface; a part that would be a single point; no ids left for the parts. The model is as it was then.
     pub fn decompose(&mut self, id: EntityId) -> Result<Vec<EntityId>, EditError> {
         let entity = &self.entities[self.position(id)?];
         let Definition::NurbsCurve(curve) = entity.definition.as_ref() else { return Err(EditError::NotACurve { id }) };
@@ -25,6 +25,9 @@ impl Model {
         }
         let parts = parted(curve, &places).map_err(|source| EditError::Decompose { id, source })?;
         let (name, count) = (entity.name.clone(), parts.len());
+        if u64::MAX - self.next_id < count as u64 {
+            return Err(EditError::NoIds { id, count, last: self.next_id - 1 });
+        }
         let mut ids = Vec::with_capacity(count);
         for (k, part) in parts.into_iter().enumerate() {
             let range = part.domain();

@@ -83,6 +83,18 @@ pub enum EditError {
         /// Why not.
         source: InvalidEdit,
     },
+    /// The model has given nearly all ids, and those of the parts are not left.
+    #[error(
+        "entity {id}: its {count} parts need ids, and the model has given those up to {last}: lower `next_id` and the highest ids in its file"
+    )]
+    NoIds {
+        /// The curve.
+        id: EntityId,
+        /// How many ids are needed.
+        count: usize,
+        /// The last id that counts as given.
+        last: u64,
+    },
     /// No original is kept of the entity.
     #[error("entity {id} has no original: it was not purged, or its original was dropped")]
     NoOriginal {

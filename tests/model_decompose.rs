@@ -164,3 +164,16 @@ fn what_is_plain_stays_whole() {
     assert_eq!(model.decompose(missing), Err(EditError::UnknownEntity { id: missing }));
     assert_eq!(model.to_ron(), text);
 }
+
+#[test]
+fn a_model_that_has_no_ids_left_for_the_parts_says_so() {
+    let mut model = Model::new();
+    let id = model.insert("ribbon", ribbon()).expect("valid");
+    let text = model.to_ron();
+    let last = text.replace("next_id: 2,", &format!("next_id: {},", u64::MAX - 2));
+    assert_ne!(last, text);
+    let mut model = Model::from_ron(&last).expect("valid");
+    let error = model.decompose(id).expect_err("three parts and two ids");
+    assert_eq!(error, EditError::NoIds { id, count: 3, last: u64::MAX - 3 });
+    assert_eq!(model.to_ron(), last);
+}
