@@ -25,6 +25,7 @@
 mod batch;
 mod decompose;
 mod dependence;
+mod doubts;
 mod edit;
 mod enter;
 mod entity;
@@ -47,6 +48,7 @@ mod trust;
 mod units;
 mod written;
 
+pub use doubts::Doubt;
 pub use edit::EditError;
 pub use enter::{Entered, IntoDefinition};
 pub use entity::{Entity, EntityError};

@@ -1,7 +1,9 @@
 //! What happens to knowledge of a file that is false.
 
 use perpend_kernel::Definition;
-use perpend_knowledge::{AcquireOptions, Contradiction, Record, Refuted, default_tolerance, prove, recognise};
+use perpend_knowledge::{
+    AcquireOptions, Contradiction, Record, Refuted, believed_tolerance, default_tolerance, prove, recognise,
+};
 
 /// What happens, on loading, to knowledge that is false: a class that the definition is proved not to have, an item of the
 /// representation that it contradicts ([`Record::contradictions`] says what is looked at).
@@ -40,8 +42,8 @@ impl Trust {
         }
     }
 
-    /// Proves the class that a record states of its definition, within the tolerance that the record names or, if that is
-    /// larger, recognition's own. A class of another definition is stale: it is not believed, and so not proved.
+    /// Proves the class that a record states of its definition, within the tolerance that the record names, as far as
+    /// [`believed_tolerance`] lets it. A class of another definition is stale: it is not believed, and so not proved.
     fn settle_class(self, record: &mut Option<Record>, definition: &Definition) -> Result<(), Refuted> {
         let class = record.as_mut().and_then(|record| record.classification.as_mut());
         let Some(kind) = class.and_then(|class| class.kind.as_mut()) else { return Ok(()) };
@@ -49,7 +51,7 @@ impl Trust {
         let outcome = if kind.is_stale(definition.fingerprint()) {
             None
         } else {
-            Some(prove(&kind.value, definition, kind.tolerance.max(tolerance)))
+            Some(prove(&kind.value, definition, believed_tolerance(kind.tolerance, definition)))
         };
         match (self, outcome) {
             (Self::Repair, None | Some(Err(_))) => *kind = recognise(definition, tolerance),

@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-use perpend::{Cleaning, Definition, Direction, Entity};
+use perpend::{Cleaning, Definition, Direction, Doubt, Entity, Model};
 
 use crate::args::CheckArguments;
 use crate::error::CommandError;
@@ -16,7 +16,7 @@ pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> 
     let surfaces = model.entities().iter().filter(|e| matches!(**e.definition(), Definition::NurbsSurface(_))).count();
     let mut text = String::new();
     for entity in model.entities() {
-        describe(&mut text, entity, model.units().symbol());
+        describe(&mut text, &model, entity, model.units().symbol());
     }
     let count = |count: usize, noun| counted(count as u64, noun);
     let _ = write!(
@@ -41,7 +41,7 @@ pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> 
 }
 
 /// A line for the entity, and one for each thing to know about it.
-fn describe(text: &mut String, entity: &Entity, unit: &str) {
+fn describe(text: &mut String, model: &Model, entity: &Entity, unit: &str) {
     let _ = writeln!(text, "{:>6}  {:?}: {}", entity.id(), entity.name(), shape(entity.definition()));
     for direction in clamped(entity) {
         let _ = writeln!(
@@ -51,6 +51,15 @@ fn describe(text: &mut String, entity: &Entity, unit: &str) {
     }
     for line in prepare::told(entity, unit) {
         let _ = writeln!(text, "        {line}");
+    }
+    for Doubt { part, drift } in model.doubts(entity.id()) {
+        let _ = writeln!(
+            text,
+            "        {part}: gives another shape, {} {unit} off at points (proven at most {}): the definition was changed by hand since, or the \
+             statement is false",
+            rounded(drift.measured),
+            rounded(drift.proven)
+        );
     }
     let stale = entity.stale();
     if !stale.is_empty() {

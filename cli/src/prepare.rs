@@ -24,7 +24,9 @@ pub(crate) fn clean(arguments: &CleanArguments) -> Result<ExitCode, CommandError
 
 pub(crate) fn purge(arguments: &PurgeArguments) -> Result<ExitCode, CommandError> {
     let mut model = arguments.trust.read(&arguments.model)?;
-    let ids = asked(&arguments.model, &model, arguments.entity)?;
+    let mut ids = asked(&arguments.model, &model, arguments.entity)?;
+    // What is made of others first: purged, it stays as it is when these are purged, and moves by no more than the tolerance.
+    ids.sort_by_key(|id| model.impact(*id).map_or(0, |impact| impact.len()));
     let consent = Consent::within(arguments.tolerance);
     let text =
         each(&mut model, &ids, (&arguments.model, &arguments.output), "purged", |model, id| model.purge(id, consent))?;

@@ -41,6 +41,13 @@ pub fn default_tolerance(definition: &Definition) -> f64 {
     1e-10 * definition.size() + 64.0 * f64::EPSILON * definition.reach()
 }
 
+/// The deviation within which a class that a record states is believed: what the record names, but not less than
+/// [`default_tolerance`], and not more than a hundredth of the size: what is farther off is another shape.
+#[must_use]
+pub fn believed_tolerance(stated: f64, definition: &Definition) -> f64 {
+    stated.min(1e-2 * definition.size()).max(default_tolerance(definition))
+}
+
 /// The class of a definition: the most special one that it is proved to be within `tolerance`, else [`Kind::FreeForm`].
 ///
 /// The basis is [`Basis::Proved`]; its gap bounds the distance between the definition and the shape within its ranges, both

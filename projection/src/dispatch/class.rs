@@ -1,7 +1,7 @@
 //! The class: proved, or acquired again.
 
 use perpend_kernel::Definition;
-use perpend_knowledge::{Item, Kind, Record, default_tolerance, prove, recognise};
+use perpend_knowledge::{Item, Kind, Record, believed_tolerance, default_tolerance, prove, recognise};
 
 use crate::answer::Method;
 use crate::plan::Reason;
@@ -32,7 +32,7 @@ impl Class {
             if item.is_stale(definition.fingerprint()) {
                 doubt("not believed: it was computed from another definition; the class is acquired again".to_owned());
             } else {
-                match prove(&item.value, definition, item.tolerance.max(tolerance)) {
+                match prove(&item.value, definition, believed_tolerance(item.tolerance, definition)) {
                     Ok(gap) => return Self { item: item.clone(), gap, acquired: false },
                     Err(refuted) => doubt(format!("not believed: {refuted}; the class is acquired again")),
                 }
