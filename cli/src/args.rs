@@ -84,6 +84,9 @@ pub(crate) struct LearnArguments {
     /// The file for the model with what was learned, written whole or not at all; it may be MODEL
     #[arg(short, long, value_name = "OUT")]
     pub(crate) output: PathBuf,
+    /// Write what is known to standard output too, as JSON, in the form of `show --json`
+    #[arg(long)]
+    pub(crate) json: bool,
 }
 
 #[derive(Debug, Args)]

@@ -2,14 +2,20 @@
 
 use std::process::ExitCode;
 
+use perpend::Entity;
+
 use crate::args::LearnArguments;
 use crate::error::CommandError;
-use crate::report;
+use crate::{report, show};
 
 pub(crate) fn run(arguments: &LearnArguments) -> Result<ExitCode, CommandError> {
     let mut model = arguments.trust.read(&arguments.model)?;
     let learned = model.learn_all();
     model.write(&arguments.output)?;
+    if arguments.json {
+        let entities: Vec<&Entity> = model.entities().iter().collect();
+        report::answer(show::json(&entities).as_bytes())?;
+    }
     report::say(format_args!(
         "{}: learned of {} of {}",
         arguments.output.display(),

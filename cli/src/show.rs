@@ -69,7 +69,8 @@ enum PerDirection {
     Surface(usize, usize),
 }
 
-fn json(entities: &[&Entity]) -> String {
+/// The entities with their records, for programs.
+pub(crate) fn json(entities: &[&Entity]) -> String {
     let entities = entities
         .iter()
         .map(|entity| EntityForm {

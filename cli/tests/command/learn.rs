@@ -18,6 +18,17 @@ fn learn_writes_the_model_with_what_it_learned() {
 }
 
 #[test]
+fn learn_tells_programs_what_is_known() {
+    let workshop = Workshop::new();
+    let run = workshop.run(&["learn", "model.ron", "-o", "learned.ron", "--json"]);
+    run.ends(0, "learned.ron: learned of 3 of 3 entities");
+    let shown = workshop.run(&["show", "learned.ron", "--json"]);
+    assert_eq!(run.out, shown.out);
+    let said: serde_json::Value = serde_json::from_str(&run.out).expect("JSON");
+    assert!(said["entities"][0]["knowledge"]["representation"]["speed"].is_array(), "{said}");
+}
+
+#[test]
 fn what_is_known_is_not_learned_again() {
     let workshop = Workshop::new();
     workshop.run(&["learn", "model.ron", "-o", "learned.ron"]).ends(0, "learned.ron: learned of 3 of 3 entities");
