@@ -16,6 +16,7 @@ mod loops;
 mod measure;
 mod near;
 mod normals;
+mod open;
 mod options;
 mod source;
 mod speed;

@@ -8,12 +8,12 @@
 //! of the slowest derivative found is a lower bound too, and often the better one.
 //! The vector `n` is halved, not its square, so that a derivative that vanishes is resolved to rounding and not to its root.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use glam::DVec3;
 
 use super::bernstein::{Form, Side, hodograph, rational_hodograph};
+use super::open::Open;
 use super::source::{Piece, Source, halfway};
 
 /// How far apart bound and attained value may stay, as a share of the greatest speed.
@@ -248,31 +248,6 @@ fn wider(form: &Form<f64>) -> Side {
     if along * n as f64 > down { Side::Second } else { Side::First }
 }
 
-struct Open {
-    key: f64,
-    leaf: Leaf,
-}
-
-impl PartialEq for Open {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Open {}
-
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Open {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.key.total_cmp(&other.key)
-    }
-}
-
 /// The extreme over all leaves. `scale` is a speed that the strip has, where one is known.
 fn search(leaves: impl Iterator<Item = Leaf>, goal: Goal, budget: f64, scale: f64) -> Extreme {
     let sign = if goal == Goal::Greatest { 1.0 } else { -1.0 };
@@ -288,18 +263,18 @@ fn search(leaves: impl Iterator<Item = Leaf>, goal: Goal, budget: f64, scale: f6
     let mut open = BinaryHeap::new();
     for leaf in leaves {
         note(&mut best, &mut slowest, &leaf);
-        open.push(Open { key: sign * view(&leaf).bound, leaf });
+        open.push(Open { key: sign * view(&leaf).bound, item: leaf });
     }
     let mut splits = 0.0;
     loop {
         let best_now = best.unwrap_or(Extreme { bound: 0.0, attained: 0.0, at: (0.0, 0.0) });
-        let Some(Open { mut leaf, .. }) = open.pop() else { return best_now };
+        let Some(Open { item: mut leaf, .. }) = open.pop() else { return best_now };
         if goal == Goal::Least {
             let shadow = leaf.shadow(slowest);
             if shadow > leaf.least.bound {
                 leaf.least.bound = shadow;
                 if open.peek().is_some_and(|next| next.key > -shadow) {
-                    open.push(Open { key: -shadow, leaf });
+                    open.push(Open { key: -shadow, item: leaf });
                     continue;
                 }
             }
@@ -316,7 +291,7 @@ fn search(leaves: impl Iterator<Item = Leaf>, goal: Goal, budget: f64, scale: f6
         splits += 1.0;
         for half in leaf.halves() {
             note(&mut best, &mut slowest, &half);
-            open.push(Open { key: sign * view(&half).bound, leaf: half });
+            open.push(Open { key: sign * view(&half).bound, item: half });
         }
     }
 }

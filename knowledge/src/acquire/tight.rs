@@ -1,12 +1,12 @@
 //! The tight box.
 
-use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
 use glam::DVec3;
 use perpend_kernel::{Aabb, cartesian};
 
 use super::bernstein::Side;
+use super::open::Open;
 use super::source::{Piece, Source};
 
 /// How far a side may stand off, as a share of the entity's size.
@@ -57,46 +57,25 @@ fn corners(piece: &Piece) -> impl Iterator<Item = DVec3> + '_ {
     piece.form.corners().map(|(k, _)| cartesian(piece.form.coefficients[k]))
 }
 
-struct Open(f64, Piece);
-
-impl PartialEq for Open {
-    fn eq(&self, other: &Self) -> bool {
-        self.cmp(other) == Ordering::Equal
-    }
-}
-
-impl Eq for Open {}
-
-impl PartialOrd for Open {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        Some(self.cmp(other))
-    }
-}
-
-impl Ord for Open {
-    fn cmp(&self, other: &Self) -> Ordering {
-        self.0.total_cmp(&other.0)
-    }
-}
-
 fn farthest(pieces: Vec<Piece>, side: usize, attained: &mut f64, tolerance: f64) -> f64 {
     let hull = |piece: &Piece| reach(&Aabb::around(piece.points()), side);
-    let mut open: BinaryHeap<Open> = pieces.into_iter().map(|piece| Open(hull(&piece), piece)).collect();
+    let mut open: BinaryHeap<Open<Piece>> =
+        pieces.into_iter().map(|piece| Open { key: hull(&piece), item: piece }).collect();
     for _ in 0..HALVINGS {
         match open.pop() {
-            Some(Open(bound, piece)) if bound > *attained + tolerance => {
+            Some(Open { key: bound, item: piece }) if bound > *attained + tolerance => {
                 let across = wider(&piece, side);
                 let (lower, upper) = piece.halves(across);
                 for half in [lower, upper] {
                     *attained = attained.max(reach(&Aabb::around(corners(&half)), side));
-                    open.push(Open(hull(&half), half));
+                    open.push(Open { key: hull(&half), item: half });
                 }
             }
-            Some(Open(bound, _)) => return bound.max(*attained),
+            Some(Open { key: bound, .. }) => return bound.max(*attained),
             None => return *attained,
         }
     }
-    open.peek().map_or(*attained, |Open(bound, _)| bound.max(*attained))
+    open.peek().map_or(*attained, |Open { key: bound, .. }| bound.max(*attained))
 }
 
 /// The parameter along which the coordinate bends more.
