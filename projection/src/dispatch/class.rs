@@ -1,7 +1,7 @@
 //! The class: proved, or acquired again.
 
 use perpend_kernel::Definition;
-use perpend_knowledge::{Item, Kind, Record, believed_tolerance, default_tolerance, prove, recognise};
+use perpend_knowledge::{Basis, Item, Kind, Record, believed_tolerance, default_tolerance, prove, recognise};
 
 use crate::answer::Method;
 use crate::plan::Reason;
@@ -39,8 +39,11 @@ impl Class {
             }
         }
         let item = recognise(definition, tolerance);
-        // recognition accepts what it has proved
-        let gap = prove(&item.value, definition, item.tolerance).unwrap_or(f64::INFINITY);
+        let gap = match item.basis {
+            Basis::Proved { gap } => gap,
+            // recognition proves what it accepts; on any other basis nothing is known of the gap
+            _ => f64::INFINITY,
+        };
         Self { item, gap, acquired: true }
     }
 
@@ -60,7 +63,7 @@ impl Class {
             (_, Kind::FreeForm) => "free form: the certified hierarchy answers".to_owned(),
             (_, _) if has_closed_form => format!(
                 "{source}{name}, proved within {gap:.1e} only, which is more than the gap of {asked:.1e} that queries ask: the certified \
-                 hierarchy answers, unless a query asks for less"
+                 hierarchy answers, unless a query names the closed form and a wider gap"
             ),
             _ => format!("{source}{name}, for which no closed form pays; the certified hierarchy answers"),
         };
