@@ -1,9 +1,11 @@
 //! A tree of boxes: which items lie nearer to a point than a given distance?
 //!
-//! The same tree serves the pieces of an entity and the entities of a model.
+//! The same tree serves the pieces of an entity and the entities of a model. A node holds the boxes of its four children side by side, so that
+//! one pass over the node's lanes tells the distances to all of them.
 
 use glam::DVec3;
 use perpend_kernel::Aabb;
+use smallvec::SmallVec;
 
 /// An item whose box may be near enough, with the square of the distance to its box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -14,23 +16,73 @@ pub struct Candidate {
     pub item: u32,
 }
 
-/// A binary tree of axis-aligned boxes over items `0..n`, immutable.
+/// Children of a node.
+const WIDTH: usize = 4;
+
+/// A tree of axis-aligned boxes over items `0..n`, four children a node, immutable.
 #[derive(Debug, Clone, Default)]
 pub struct BoxTree {
-    /// Depth first; the left child of an inner node follows it.
+    /// Depth first; the root is the first.
     nodes: Vec<Node>,
 }
 
+/// The boxes of four children, one a lane; the box of a lane without a child holds nothing and is infinitely far.
 #[derive(Debug, Clone, Copy)]
 struct Node {
-    bounds: Aabb,
-    kind: Kind,
+    min: [[f64; WIDTH]; 3],
+    max: [[f64; WIDTH]; 3],
+    children: [Child; WIDTH],
 }
 
-#[derive(Debug, Clone, Copy)]
-enum Kind {
-    Leaf { item: u32 },
-    Inner { right: u32 },
+/// A child: an item, or an inner node.
+#[derive(Debug, Clone, Copy, PartialEq)]
+enum Child {
+    Item(u32),
+    Inner(u32),
+}
+
+impl Node {
+    const EMPTY: Self = Self {
+        min: [[f64::INFINITY; WIDTH]; 3],
+        max: [[f64::NEG_INFINITY; WIDTH]; 3],
+        children: [Child::Item(u32::MAX); WIDTH],
+    };
+
+    fn set(&mut self, lane: usize, bounds: Aabb, child: Child) {
+        for axis in 0..3 {
+            self.min[axis][lane] = bounds.min[axis];
+            self.max[axis][lane] = bounds.max[axis];
+        }
+        self.children[lane] = child;
+    }
+
+    /// Squares of the distances from `p` to the children's boxes.
+    #[inline(always)]
+    fn distances_squared(&self, p: DVec3) -> [f64; WIDTH] {
+        let mut sum = [0.0; WIDTH];
+        for (axis, p) in p.to_array().into_iter().enumerate() {
+            for (lane, sum) in sum.iter_mut().enumerate() {
+                let (below, above) = (self.min[axis][lane] - p, p - self.max[axis][lane]);
+                let outside = if below > above { below } else { above };
+                let outside = if outside > 0.0 { outside } else { 0.0 };
+                *sum += outside * outside;
+            }
+        }
+        sum
+    }
+
+    /// Squares of the distances from `p` to the middles of the children's boxes, times four; not a number where there is no child.
+    #[inline(always)]
+    fn middles_squared(&self, p: DVec3) -> [f64; WIDTH] {
+        let mut sum = [0.0; WIDTH];
+        for (axis, p) in p.to_array().into_iter().enumerate() {
+            for (lane, sum) in sum.iter_mut().enumerate() {
+                let apart = (self.min[axis][lane] - p) + (self.max[axis][lane] - p);
+                *sum += apart * apart;
+            }
+        }
+        sum
+    }
 }
 
 impl BoxTree {
@@ -38,7 +90,7 @@ impl BoxTree {
     #[must_use]
     pub fn new(boxes: &[Aabb]) -> Self {
         let mut order: Vec<u32> = (0..boxes.len()).map(|i| i as u32).collect();
-        let mut nodes = Vec::with_capacity((2 * boxes.len()).saturating_sub(1));
+        let mut nodes = Vec::with_capacity(boxes.len() / 2 + 1);
         if !boxes.is_empty() {
             build(&mut order, boxes, &mut nodes);
         }
@@ -49,73 +101,81 @@ impl BoxTree {
     /// were looked at.
     pub fn nearer_than(&self, p: DVec3, limit_squared: f64, found: &mut Vec<Candidate>) -> u64 {
         let mut looked = 0;
-        let mut next = 0;
-        // Depth first without a stack: an inner node that is too far jumps past its subtree.
-        let mut pending: smallvec::SmallVec<[usize; 64]> = smallvec::SmallVec::new();
-        while next < self.nodes.len() {
-            let node = &self.nodes[next];
-            looked += 1;
-            let distance_squared = node.bounds.distance_squared(p);
-            let near = distance_squared < limit_squared;
-            match node.kind {
-                Kind::Inner { right } if near => {
-                    pending.push(right as usize);
-                    next += 1;
-                    continue;
+        let mut pending: SmallVec<[u32; 64]> = SmallVec::new();
+        if !self.nodes.is_empty() {
+            pending.push(0);
+        }
+        while let Some(at) = pending.pop() {
+            let node = &self.nodes[at as usize];
+            looked += WIDTH as u64;
+            let distances = node.distances_squared(p);
+            for (distance_squared, child) in distances.into_iter().zip(node.children) {
+                if distance_squared < limit_squared {
+                    match child {
+                        Child::Item(item) => found.push(Candidate { distance_squared, item }),
+                        Child::Inner(node) => pending.push(node),
+                    }
                 }
-                Kind::Leaf { item } if near => found.push(Candidate { distance_squared, item }),
-                _ => {}
-            }
-            match pending.pop() {
-                Some(node) => next = node,
-                None => break,
             }
         }
         looked
     }
 
-    /// The item that a descent to the nearer child, always, arrives at; none in an empty tree. Among equally near boxes the
-    /// one with the nearer middle is taken, then the first. Also returns how many boxes were looked at.
+    /// The item that a descent to the nearest child, always, arrives at; none in an empty tree. Among equally near boxes the
+    /// one with the nearest middle is taken, then the first. Also returns how many boxes were looked at.
     #[must_use]
     pub fn descend(&self, p: DVec3) -> Option<(u32, u64)> {
         let mut looked = 0;
-        let mut at = 0;
+        let mut node = self.nodes.first()?;
         loop {
-            match self.nodes.get(at)?.kind {
-                Kind::Leaf { item } => return Some((item, looked)),
-                Kind::Inner { right } => {
-                    let rank =
-                        |node: &Node| (node.bounds.distance_squared(p), (node.bounds.centre() - p).length_squared());
-                    looked += 2;
-                    let (left, right) = (at + 1, right as usize);
-                    at = if rank(&self.nodes[right]) < rank(&self.nodes[left]) { right } else { left };
+            looked += WIDTH as u64;
+            let (distances, middles) = (node.distances_squared(p), node.middles_squared(p));
+            let mut best = 0;
+            for lane in 1..WIDTH {
+                let nearer = distances[lane] < distances[best];
+                if nearer || (distances[lane] == distances[best] && middles[lane] < middles[best]) {
+                    best = lane;
                 }
+            }
+            match node.children[best] {
+                Child::Item(item) => return Some((item, looked)),
+                Child::Inner(at) => node = &self.nodes[at as usize],
             }
         }
     }
 }
 
-/// Splits at the median of the middles along the longest extent: balanced, whatever the boxes.
-fn build(order: &mut [u32], boxes: &[Aabb], nodes: &mut Vec<Node>) {
-    let bounds = order.iter().fold(Aabb::EMPTY, |all, i| all.join(boxes[*i as usize]));
-    if let [item] = *order {
-        nodes.push(Node { bounds, kind: Kind::Leaf { item } });
-        return;
-    }
-    let middle = |i: u32| boxes[i as usize].centre();
-    let extent = {
-        let middles = Aabb::around(order.iter().map(|i| middle(*i)));
-        middles.max - middles.min
-    };
-    let axis = extent.to_array().iter().enumerate().fold(0, |best, (k, e)| if *e > extent[best] { k } else { best });
-    let half = order.len() / 2;
-    order.select_nth_unstable_by(half, |a, b| middle(*a)[axis].total_cmp(&middle(*b)[axis]).then(a.cmp(b)));
-    let (left, right) = order.split_at_mut(half);
+/// Splits at the medians of the middles along the longest extents: balanced, whatever the boxes. Returns the node's index.
+fn build(order: &mut [u32], boxes: &[Aabb], nodes: &mut Vec<Node>) -> u32 {
     let me = nodes.len();
-    nodes.push(Node { bounds, kind: Kind::Inner { right: 0 } });
-    build(left, boxes, nodes);
-    nodes[me].kind = Kind::Inner { right: nodes.len() as u32 };
-    build(right, boxes, nodes);
+    nodes.push(Node::EMPTY);
+    let mut node = Node::EMPTY;
+    let (low, high) = halves(order, boxes);
+    let quarters = [halves(low, boxes), halves(high, boxes)].map(<[_; 2]>::from).into_iter().flatten();
+    for (lane, part) in quarters.filter(|part| !part.is_empty()).enumerate() {
+        let bounds = part.iter().fold(Aabb::EMPTY, |all, i| all.join(boxes[*i as usize]));
+        let child = match *part {
+            [item] => Child::Item(item),
+            _ => Child::Inner(build(part, boxes, nodes)),
+        };
+        node.set(lane, bounds, child);
+    }
+    nodes[me] = node;
+    me as u32
+}
+
+/// Both halves of some items, by their middles along the longest extent of these.
+fn halves<'a>(order: &'a mut [u32], boxes: &[Aabb]) -> (&'a mut [u32], &'a mut [u32]) {
+    let middle = |i: u32| boxes[i as usize].centre();
+    let half = order.len() / 2;
+    if half > 0 {
+        let middles = Aabb::around(order.iter().map(|i| middle(*i)));
+        let extent = middles.max - middles.min;
+        let axis =
+            extent.to_array().iter().enumerate().fold(0, |best, (k, e)| if *e > extent[best] { k } else { best });
+        order.select_nth_unstable_by(half, |a, b| middle(*a)[axis].total_cmp(&middle(*b)[axis]).then(a.cmp(b)));
+    }
+    order.split_at_mut(half)
 }
 
 #[cfg(test)]

@@ -16,16 +16,17 @@
 //!    box. Asking for this weaker thing than monotony is what lets collapsed edges, zero widths and exact ties through.
 //! 4. **Convex**: with `H >= diag(a, c)` on the box and any point `x0` of it,
 //!    `G >= G(x0) + min (Gs ds + a ds²/2) + min (Gt dt + c dt²/2)` over the steps that stay in the box. At the corners value and gradient are
-//!    coefficients; elsewhere they are evaluated, with errors [`value_error`] and [`gradient_error`].
+//!    coefficients; elsewhere they are evaluated, with errors of their own ([`bound`](super::bound)).
 //! 5. else the box is split.
 //!
 //! Reductions may give away a tenth of the margin that the form has at a foot; whether they gave too much, the closing test decides.
 
-use glam::{DVec3, DVec4};
+use glam::DVec3;
 
 use super::ROUNDING;
+use super::bound::{least_from, value_error};
 use super::convex::{self, Curvature, Patch};
-use super::form::rounding_bound;
+use super::form::{form, rounding_bound};
 use super::leaf::Leaf;
 use super::net;
 use super::newton::{self, Domain, Found, Search};
@@ -83,32 +84,39 @@ impl Part<'_> {
         self.within.s == (0.0, 1.0) && self.within.t == (0.0, 1.0)
     }
 
+    /// Parameters of the part as parameters of its prepared leaf.
+    pub(super) fn parameters(&self, s: f64, t: f64) -> (f64, f64) {
+        let along = |(from, to): (f64, f64), x: f64| if x >= 1.0 { to } else { from + x * (to - from) };
+        (along(self.within.s, s), along(self.within.t, t))
+    }
+
     /// A point of the part as a point of the entity.
     pub(super) fn foot(&self, found: &Found) -> Foot {
-        let along = |(from, to): (f64, f64), x: f64| if x >= 1.0 { to } else { from + x * (to - from) };
+        let (s, t) = self.parameters(found.s, found.t);
         Foot {
             leaf: self.index,
-            s: along(self.within.s, found.s),
-            t: along(self.within.t, found.t),
-            point: found.jet.p.truncate() / found.jet.p.w + self.leaf.origin,
+            s,
+            t,
+            next: self.parameters(found.next.0, found.next.1),
+            point: found.jet.point() + self.leaf.origin,
             distance: found.distance,
         }
     }
 
     /// Looks for a foot from the part's linear guess: none can be nearer than what is proven, but one may be as near.
-    pub(super) fn look_for_tie(&self, state: &mut State) {
+    pub(super) fn look_for_tie(&self, state: &mut State<'_>) {
         let x = state.point - self.leaf.origin;
         let (s, t) = self.leaf.linear_guess(x);
         let domain = Domain::WHOLE;
         let decrease = 1e-3 * state.margin();
-        let search = Search { domain, start: domain.clamp(s, t), known: None, iterations: 8, decrease };
+        let search = Search { domain, start: domain.clamp(s, t), evaluations: 8, decrease };
         let found = newton::search(self.leaf, x, search, &mut state.done, |_| false);
         self.offer(&found, state);
     }
 
     /// Tells the state of a point of the part.
-    fn offer(&self, found: &Found, state: &mut State) {
-        state.offer(self.foot(found), self.is_whole().then_some(found.jet));
+    pub(super) fn offer(&self, found: &Found, state: &mut State<'_>) {
+        state.offer(self.foot(found));
     }
 }
 
@@ -121,36 +129,10 @@ pub(super) enum Outcome {
     Stopped,
 }
 
-/// Error of `|A - x w|² - tau² w²` evaluated at a point at distance `d`.
-///
-/// The basis functions have a relative error of at most `(2 p + 1) u` each, the sums add one rounding a term: `A - x w` errs by at most
-/// `c u (d + 2 r) W` with `c = 3 (p + q) + 8`, and `|A - x w| <= d W`. Hence `2 c u (d² + 2 d r) W²`, and a few `u d² W²` for the square and for
-/// `tau² w²`; the factor below is more than twice that.
-fn value_error(leaf: &Leaf, d: f64) -> f64 {
-    let (p, q) = leaf.degree;
-    let factor = (4 * (p + q + 8) * (1 + p + q)) as f64;
-    factor * ROUNDING * (d * d + 2.0 * d * leaf.radius) * leaf.heaviest * leaf.heaviest
-}
-
-/// Error of the derivative `2 (A - x w) · (A_s - x w_s) - 2 tau² w w_s`, `degree` being the leaf's in that direction.
-///
-/// A derivative is a sum over differences of basis functions, `Σ |B'| <= 2 p`, so `A_s - x w_s` errs by at most `2 p c u (d + 2 r) W`. This does not
-/// fall with `d`: beside the surface it is what limits the test.
-fn gradient_error(leaf: &Leaf, d: f64, tau: f64, direction: DVec3, weight: f64, degree: usize) -> f64 {
-    let (p, q) = leaf.degree;
-    let (w, twice) = (leaf.heaviest, 2.0 * degree as f64);
-    let reach = d + 2.0 * leaf.radius;
-    let sum = reach * w * direction.length()
-        + twice * d * reach * w * w
-        + tau * tau * w * weight.abs()
-        + twice * tau * tau * w * w;
-    (8 * (p + q + 8)) as f64 * ROUNDING * sum
-}
-
 /// Proves the part no nearer than the state's `tau`, or finds nearer points on the way (then `tau` falls).
 ///
 /// At most `share` splits are spent; `last` says that nothing follows: then boxes that resist are left open.
-pub(super) fn certify(part: Part<'_>, state: &mut State, memory: &mut Memory, share: u32, last: bool) -> Outcome {
+pub(super) fn certify(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory, share: u32, last: bool) -> Outcome {
     let leaf = part.leaf;
     let x = state.point - leaf.origin;
     let mut proof = Proof { part, x, formed: 0.0, tried: false };
@@ -208,12 +190,12 @@ struct Proof<'a> {
 
 impl Proof<'_> {
     /// Makes the form of the whole leaf.
-    fn restart(&mut self, state: &mut State, memory: &mut Memory) {
+    fn restart(&mut self, state: &mut State<'_>, memory: &mut Memory) {
         let leaf = self.part.leaf;
         self.formed = state.tau();
         memory.nets.clear();
         memory.cells.clear();
-        leaf.tables.form(leaf.shape(), self.x, self.formed, &mut memory.nets);
+        form(leaf.shape(), &leaf.opened().tables, self.x, self.formed, &mut memory.nets);
         state.done.pieces += 1;
         let (m, n) = leaf.shape().form_degree();
         let rounding = rounding_bound(leaf.degree, self.x.length(), leaf.radius, self.formed, leaf.heaviest);
@@ -223,16 +205,16 @@ impl Proof<'_> {
     /// Whether `tau` fell so far that the form of a rational leaf asks for more than is needed. What is convex or dominated
     /// at one `tau` need not be at another, since the weights vary. (A form that asks for more still proves what it proves: when the
     /// work is spent, it is kept.)
-    fn is_stale(&self, state: &State) -> bool {
+    fn is_stale(&self, state: &State<'_>) -> bool {
         self.part.leaf.rational && state.work > 0 && state.tau() < self.formed - 0.5 * state.goal.gap
     }
 
     /// The `tau` that the form speaks of.
-    fn tau(&self, state: &State) -> f64 {
+    fn tau(&self, state: &State<'_>) -> f64 {
         if self.part.leaf.rational { self.formed } else { state.tau() }
     }
 
-    fn examine(&mut self, mut cell: Cell, state: &mut State, memory: &mut Memory) -> Verdict {
+    fn examine(&mut self, mut cell: Cell, state: &mut State<'_>, memory: &mut Memory) -> Verdict {
         let leaf = self.part.leaf;
         let threshold = if leaf.rational { 0.0 } else { state.tau().powi(2) };
         let budget = 0.1 * state.margin() * leaf.lightest * leaf.lightest;
@@ -269,7 +251,7 @@ impl Proof<'_> {
     }
 
     /// A box that is only just positive may hold a foot as near as the best, within the gap.
-    fn look_for_tie(&mut self, least: f64, state: &mut State) {
+    fn look_for_tie(&mut self, least: f64, state: &mut State<'_>) {
         let leaf = self.part.leaf;
         let reach = state.reach();
         let limit = if leaf.rational {
@@ -284,7 +266,7 @@ impl Proof<'_> {
     }
 
     /// Test 2. None where the least coefficient is no corner's; otherwise the corner is evaluated, which may find a nearer point.
-    fn corner(&self, cell: Cell, g: &[f64], least: f64, budget: f64, state: &mut State) -> Option<Verdict> {
+    fn corner(&self, cell: Cell, g: &[f64], least: f64, budget: f64, state: &mut State<'_>) -> Option<Verdict> {
         let leaf = self.part.leaf;
         let (at, corner) = corners(cell).min_by(|a, b| g[a.0].total_cmp(&g[b.0]))?;
         let given = g[at] - least + 2.0 * cell.rounding + cell.slack;
@@ -292,34 +274,26 @@ impl Proof<'_> {
             return None;
         }
         state.done.evaluations += 1;
-        let jet = leaf.jet(corner.0, corner.1);
-        let d = (jet.p.truncate() / jet.p.w).distance(self.x);
-        self.part.offer(&Found { distance: d, s: corner.0, t: corner.1, jet }, state);
+        let found = newton::point(leaf, self.x, corner);
+        let (d, weight) = (found.distance, found.jet.p.w);
+        self.part.offer(&found, state);
         if self.is_stale(state) {
             return Some(Verdict::Again(cell));
         }
         let tau = self.tau(state);
-        let value = (d - tau) * (d + tau) * jet.p.w * jet.p.w;
+        let value = (d - tau) * (d + tau) * weight * weight;
         (value >= given + value_error(leaf, d)).then_some(Verdict::Closed)
     }
 
     /// Test 4 away from the corners: Newton's method inside the box, the bound tested at every iterate.
-    fn newton_closes(&self, cell: Cell, curvature: Curvature, state: &mut State) -> bool {
+    fn newton_closes(&self, cell: Cell, curvature: Curvature, state: &mut State<'_>) -> bool {
         let leaf = self.part.leaf;
-        // the best point, if it lies in the box: its evaluation is there already
-        let best = state.best_jet.filter(|_| {
-            state.best.leaf == self.part.index
-                && self.part.is_whole()
-                && cell.domain.contains(state.best.s, state.best.t)
-        });
-        let guess = best.map_or_else(|| leaf.linear_guess(self.x), |_| (state.best.s, state.best.t));
-        let search = Search {
-            domain: cell.domain,
-            start: cell.domain.clamp(guess.0, guess.1),
-            known: best,
-            iterations: 16,
-            decrease: 1e-3 * state.margin(),
-        };
+        // from the best point, if it lies in the box
+        let best = state.best;
+        let here = best.leaf == self.part.index && self.part.is_whole() && cell.domain.contains(best.s, best.t);
+        let (s, t) = if here { best.next } else { leaf.linear_guess(self.x) };
+        let start = cell.domain.clamp(s, t);
+        let search = Search { domain: cell.domain, start, evaluations: 16, decrease: 1e-3 * state.margin() };
         let (upper, goal, formed) = (state.best.distance, state.goal, self.formed);
         let mut closed = false;
         let found = newton::search(leaf, self.x, search, &mut state.done, |found| {
@@ -337,27 +311,11 @@ impl Proof<'_> {
 
     /// The least that the form can be on the box, seen from an evaluated point.
     fn bound_from(&self, found: &Found, cell: Cell, curvature: Curvature, tau: f64) -> f64 {
-        let (leaf, d) = (self.part.leaf, found.distance);
-        let from_query = |h: DVec4| h.truncate() - self.x * h.w;
-        let (w, q) = (found.jet.p.w, from_query(found.jet.p));
-        let mut bound = (d - tau) * (d + tau) * w * w - value_error(leaf, d) - cell.slack;
-        let mut along = |h: DVec4, degree: usize, curvature: f64, at: f64, (from, to): (f64, f64)| {
-            let direction = from_query(h);
-            let slope = 2.0 * q.dot(direction) - 2.0 * tau * tau * w * h.w;
-            let error = gradient_error(leaf, d, tau, direction, h.w, degree);
-            bound += convex::descent(slope, error, curvature, from - at, to - at);
-        };
-        if cell.m > 0 {
-            along(found.jet.ps, leaf.degree.0, curvature.s, found.s, cell.domain.s);
-        }
-        if cell.n > 0 {
-            along(found.jet.pt, leaf.degree.1, curvature.t, found.t, cell.domain.t);
-        }
-        bound
+        least_from(self.part.leaf, self.x, found, cell.domain, curvature, tau) - cell.slack
     }
 
     /// Newton's method from where the least coefficient has its Greville point: it may find a nearer point.
-    fn newton_from_least(&self, cell: Cell, g: &[f64], state: &mut State) {
+    fn newton_from_least(&self, cell: Cell, g: &[f64], state: &mut State<'_>) {
         let at = (0..g.len()).fold(0, |best, i| if g[i] < g[best] { i } else { best });
         let (width, (extent_s, extent_t)) = (cell.n + 1, cell.extent());
         let share = |i: usize, degree: usize| if degree > 0 { i as f64 / degree as f64 } else { 0.0 };
@@ -366,13 +324,13 @@ impl Proof<'_> {
             cell.domain.t.0 + extent_t * share(at % width, cell.n),
         );
         let decrease = 1e-2 * state.margin();
-        let search = Search { domain: cell.domain, start, known: None, iterations: 8, decrease };
+        let search = Search { domain: cell.domain, start, evaluations: 8, decrease };
         let found = newton::search(self.part.leaf, self.x, search, &mut state.done, |_| false);
         self.part.offer(&found, state);
     }
 
     /// Leaves a box open: its bound counts for the answer. `G >= c` gives `D >= tau² + c / w²`.
-    fn leave_open(&self, cell: Cell, least: f64, state: &mut State) {
+    fn leave_open(&self, cell: Cell, least: f64, state: &mut State<'_>) {
         let leaf = self.part.leaf;
         state.done.unresolved += 1;
         let tau = if leaf.rational { self.formed } else { 0.0 };
@@ -491,92 +449,4 @@ fn split(cell: Cell, memory: &mut Memory) {
     second.offset = cell.offset + len;
     memory.cells.push(first);
     memory.cells.push(second);
-}
-
-#[cfg(test)]
-mod tests {
-    use super::super::double_double::{DoubleDouble, Random};
-    use super::super::piece::Piece;
-    use super::*;
-    use perpend_kernel::binomial;
-
-    /// Bernstein polynomials and their first derivatives in double-double.
-    fn basis(n: usize, x: f64) -> Vec<[DoubleDouble; 2]> {
-        let number = DoubleDouble::from;
-        let power = |base: DoubleDouble, k: usize| (0..k).fold(number(1.0), |product, _| product * base);
-        let (x, y) = (number(x), number(1.0) - number(x));
-        let value = |n: usize, i: usize| number(binomial(n, i)) * power(x, i) * power(y, n - i);
-        (0..=n)
-            .map(|i| {
-                let above = if i >= 1 { value(n - 1, i - 1) } else { number(0.0) };
-                let below = if n >= 1 && i < n { value(n - 1, i) } else { number(0.0) };
-                [value(n, i), number(n as f64) * (above - below)]
-            })
-            .collect()
-    }
-
-    /// `G` and its two derivatives at `(s, t)`, in double-double from the leaf's net.
-    fn exact(leaf: &Leaf, x: DVec3, tau: f64, s: f64, t: f64) -> [f64; 3] {
-        let (p, q) = leaf.degree;
-        let number = DoubleDouble::from;
-        let (bs, bt) = (basis(p, s), basis(q, t));
-        // the value and both derivatives of A - x w, and of w as a fourth coordinate
-        let mut jets = [[number(0.0); 4]; 3];
-        for (e, h) in leaf.net.iter().enumerate() {
-            let (i, j) = (e / (q + 1), e % (q + 1));
-            let shares = [bs[i][0] * bt[j][0], bs[i][1] * bt[j][0], bs[i][0] * bt[j][1]];
-            for (jet, share) in jets.iter_mut().zip(shares) {
-                for k in 0..3 {
-                    jet[k] = jet[k] + share * (number(h[k]) - number(x[k]) * number(h.w));
-                }
-                jet[3] = jet[3] + share * number(h.w);
-            }
-        }
-        let square = number(tau) * number(tau);
-        let product = |a: &[DoubleDouble; 4], b: &[DoubleDouble; 4]| {
-            (0..3).fold(number(0.0), |sum, k| sum + a[k] * b[k]) - square * a[3] * b[3]
-        };
-        let value = product(&jets[0], &jets[0]).to_f64();
-        let [ds, dt] = [1, 2].map(|k| (number(2.0) * product(&jets[0], &jets[k])).to_f64());
-        [value, ds, dt]
-    }
-
-    /// The value that the convexity test starts from, and its gradient, each within its own bound; near the surface too,
-    /// where the gradient's error does not fall with the distance.
-    #[test]
-    fn evaluated_values_and_gradients_err_within_their_bounds() {
-        let mut random = Random(9);
-        let (mut worst_value, mut worst_gradient) = (0.0_f64, 0.0_f64);
-        for round in 0..2000 {
-            let degree = [(1, 0), (3, 0), (9, 0), (25, 0), (1, 1), (3, 3), (2, 5), (9, 9)][round % 8];
-            let rational = round % 3 > 0;
-            let count = (degree.0 + 1) * (degree.1 + 1);
-            let net = (0..count)
-                .map(|_| {
-                    let weight = if rational { 10.0_f64.powf(random.between(-3.0, 0.0)) } else { 1.0 };
-                    (random.point() * weight).extend(weight)
-                })
-                .collect();
-            let leaf = Leaf::new(Piece { degree, net, u: (0.0, 1.0), v: (0.0, 1.0) }, rational);
-            let (s, t) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
-            let jet = leaf.jet(s, t);
-            let x = jet.cartesian().p + random.point() * 10.0_f64.powf(random.between(-12.0, 2.0));
-            let d = jet.cartesian().p.distance(x);
-            let tau = d * random.between(0.9, 1.0);
-            let exact = exact(&leaf, x, tau, s, t);
-            let w = jet.p.w;
-            let q = jet.p.truncate() - x * w;
-            let value = (d - tau) * (d + tau) * w * w;
-            worst_value = worst_value.max((value - exact[0]).abs() / value_error(&leaf, d));
-            let derivatives = [(jet.ps, degree.0, exact[1]), (jet.pt, degree.1, exact[2])];
-            for (h, n, exact) in derivatives.into_iter().filter(|(_, n, _)| *n > 0) {
-                let direction = h.truncate() - x * h.w;
-                let slope = 2.0 * q.dot(direction) - 2.0 * tau * tau * w * h.w;
-                let error = gradient_error(&leaf, d, tau, direction, h.w, n);
-                worst_gradient = worst_gradient.max((slope - exact).abs() / error);
-            }
-        }
-        assert!(worst_value < 1.0 && worst_gradient < 1.0, "{worst_value} {worst_gradient}");
-        assert!(worst_value > 1e-4 && worst_gradient > 1e-4, "idle bounds: {worst_value} {worst_gradient}");
-    }
 }

@@ -23,7 +23,7 @@ pub(super) struct Patch<'a> {
 const WORTHWHILE: f64 = 0.02;
 
 /// Above this correlation of the interval test the matrix test, if it holds, gives the better bound.
-const CORRELATED: f64 = 0.98;
+pub(super) const CORRELATED: f64 = 0.98;
 
 /// A proven lower bound of the Hessian on the box, if the form is found convex there.
 ///

@@ -31,16 +31,10 @@
 //!
 //! where `N + 17` was used up: what is left over pays for the rounding of the differences that the tests form of `g`.
 
-use std::sync::OnceLock;
-
 use glam::{DVec3, DVec4};
 use perpend_kernel::binomial;
 
 use super::ROUNDING;
-
-/// The tables of a leaf, made when the leaf is first opened.
-#[derive(Debug, Default)]
-pub(super) struct Tables(OnceLock<Box<[f64]>>);
 
 /// What the form needs to know of a leaf.
 #[derive(Debug, Clone, Copy)]
@@ -74,28 +68,25 @@ pub(super) fn rounding_bound(degree: (usize, usize), x: f64, r: f64, tau: f64, h
     rounding_factor(degree) * ROUNDING * ((x + r).powi(2) + tau * tau) * heaviest * heaviest
 }
 
-impl Tables {
-    /// Appends the coefficients of the form at `x` to `out`. `tau` enters that of a rational leaf only.
-    pub(super) fn form(&self, leaf: Shape<'_>, x: DVec3, tau: f64, out: &mut Vec<f64>) {
-        let tables = self.0.get_or_init(|| make(leaf));
-        let len = leaf.form_len();
-        let table = |k: usize| &tables[k * len..(k + 1) * len];
-        let (c0, cx, cy, cz) = (table(0), table(1), table(2), table(3));
-        let (x, xx) = (-2.0 * x, x.length_squared());
-        let linear = c0.iter().zip(cx).zip(cy).zip(cz).map(|(((c0, a), b), c)| c0 + x.x * a + x.y * b + x.z * c);
-        if leaf.rational {
-            let kappa = xx - tau * tau;
-            out.extend(linear.zip(table(4)).map(|(g, c2)| g + kappa * c2));
-        } else {
-            out.extend(linear.map(|g| g + xx));
-        }
+/// Appends the coefficients of the form at `x` to `out`. `tau` enters that of a rational leaf only.
+pub(super) fn form(leaf: Shape<'_>, tables: &[f64], x: DVec3, tau: f64, out: &mut Vec<f64>) {
+    let len = leaf.form_len();
+    let table = |k: usize| &tables[k * len..(k + 1) * len];
+    let (c0, cx, cy, cz) = (table(0), table(1), table(2), table(3));
+    let (x, xx) = (-2.0 * x, x.length_squared());
+    let linear = c0.iter().zip(cx).zip(cy).zip(cz).map(|(((c0, a), b), c)| c0 + x.x * a + x.y * b + x.z * c);
+    if leaf.rational {
+        let kappa = xx - tau * tau;
+        out.extend(linear.zip(table(4)).map(|(g, c2)| g + kappa * c2));
+    } else {
+        out.extend(linear.map(|g| g + xx));
     }
 }
 
 /// The tables: `c0`, the coordinates of `c1`, and `c2` where the leaf is rational.
 ///
 /// Points are scaled by their binomials once, products are summed over unordered pairs, and the sums are divided once.
-fn make(leaf: Shape<'_>) -> Box<[f64]> {
+pub(super) fn tables(leaf: Shape<'_>) -> Box<[f64]> {
     let ((p, q), (m, n)) = (leaf.degree, leaf.form_degree());
     let (width, len) = (n + 1, leaf.form_len());
     let scaled: Vec<DVec4> =

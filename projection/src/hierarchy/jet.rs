@@ -1,9 +1,12 @@
 //! Evaluation of a Bézier piece: point and derivatives up to order two.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f64x4};
 use glam::{DVec3, DVec4};
 
-/// Homogeneous point and derivatives in the piece's own parameters `s, t` in `[0, 1]`.
-#[derive(Debug, Clone, Copy, Default)]
+/// The point and its derivatives in the piece's own parameters `s, t` in `[0, 1]`; as fourth coordinate of each, the same of the weight. Of a
+/// polynomial piece that is 1, and 0 for the derivatives, but for rounding.
+#[derive(Debug, Clone, Copy)]
 pub(super) struct Jet {
     pub p: DVec4,
     pub ps: DVec4,
@@ -13,84 +16,142 @@ pub(super) struct Jet {
     pub ptt: DVec4,
 }
 
-/// The same of the point itself, divided by the weight.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct CartesianJet {
-    pub p: DVec3,
-    pub ps: DVec3,
-    pub pt: DVec3,
-    pub pss: DVec3,
-    pub pst: DVec3,
-    pub ptt: DVec3,
-}
-
 impl Jet {
-    /// Evaluates the net of degree `(p, q)` in row order; a curve has `q = 0`.
-    pub(super) fn at(net: &[DVec4], (p, q): (usize, usize), s: f64, t: f64) -> Self {
+    /// Evaluates the net of degree `(p, q)` in row order; a curve has `q = 0`. The same bits at every level: products are
+    /// rounded before they are added.
+    pub(super) fn at(level: Level, net: &[DVec4], degree: (usize, usize), rational: bool, s: f64, t: f64) -> Self {
         // the usual degrees with loops of known length, the others with room for the highest
-        match (p, q) {
-            (1, 0) => curve::<2>(net, p, s),
-            (2, 0) => curve::<3>(net, p, s),
-            (3, 0) => curve::<4>(net, p, s),
-            (_, 0) => curve::<26>(net, p, s),
-            (1, 1) => surface::<2, 2>(net, p, q, s, t),
-            (1, 2) => surface::<2, 3>(net, p, q, s, t),
-            (2, 1) => surface::<3, 2>(net, p, q, s, t),
-            (2, 2) => surface::<3, 3>(net, p, q, s, t),
-            (3, 1) => surface::<4, 2>(net, p, q, s, t),
-            (3, 2) => surface::<4, 3>(net, p, q, s, t),
-            (3, 3) => surface::<4, 4>(net, p, q, s, t),
-            _ => surface::<26, 26>(net, p, q, s, t),
-        }
+        dispatch!(level, simd => match degree {
+            (1, 0) => curve::<_, 2>(simd, net, 1, s).jet(rational),
+            (2, 0) => curve::<_, 3>(simd, net, 2, s).jet(rational),
+            (3, 0) => curve::<_, 4>(simd, net, 3, s).jet(rational),
+            (p, 0) => any_curve(simd, net, p, s).jet(rational),
+            (1, 1) => surface::<_, 2, 2>(simd, net, 1, 1, s, t).jet(rational),
+            (1, 2) => surface::<_, 2, 3>(simd, net, 1, 2, s, t).jet(rational),
+            (2, 1) => surface::<_, 3, 2>(simd, net, 2, 1, s, t).jet(rational),
+            (2, 2) => surface::<_, 3, 3>(simd, net, 2, 2, s, t).jet(rational),
+            (3, 1) => surface::<_, 4, 2>(simd, net, 3, 1, s, t).jet(rational),
+            (3, 2) => surface::<_, 4, 3>(simd, net, 3, 2, s, t).jet(rational),
+            (2, 3) => surface::<_, 3, 4>(simd, net, 2, 3, s, t).jet(rational),
+            (3, 3) => surface::<_, 4, 4>(simd, net, 3, 3, s, t).jet(rational),
+            (p, q) => any_surface(simd, net, p, q, s, t).jet(rational),
+        })
     }
 
-    /// The point and its derivatives by the quotient rule (The NURBS Book, equations 4.8 and 4.20).
-    pub(super) fn cartesian(&self) -> CartesianJet {
-        let r = 1.0 / self.p.w;
-        let p = self.p.truncate() * r;
-        let ps = (self.ps.truncate() - self.ps.w * p) * r;
-        let pt = (self.pt.truncate() - self.pt.w * p) * r;
-        CartesianJet {
-            p,
-            ps,
-            pt,
-            pss: (self.pss.truncate() - 2.0 * self.ps.w * ps - self.pss.w * p) * r,
-            pst: (self.pst.truncate() - self.ps.w * pt - self.pt.w * ps - self.pst.w * p) * r,
-            ptt: (self.ptt.truncate() - 2.0 * self.pt.w * pt - self.ptt.w * p) * r,
+    /// The point.
+    pub(super) fn point(&self) -> DVec3 {
+        self.p.truncate()
+    }
+}
+
+/// Homogeneous point and derivatives.
+struct Homogeneous<S: Simd> {
+    p: f64x4<S>,
+    ps: f64x4<S>,
+    pt: f64x4<S>,
+    pss: f64x4<S>,
+    pst: f64x4<S>,
+    ptt: f64x4<S>,
+}
+
+impl<S: Simd> Homogeneous<S> {
+    #[inline(always)]
+    fn zero(simd: S) -> Self {
+        let zero = f64x4::splat(simd, 0.0);
+        Self { p: zero, ps: zero, pt: zero, pss: zero, pst: zero, ptt: zero }
+    }
+
+    #[inline(always)]
+    fn jet(self, rational: bool) -> Jet {
+        let Self { p, ps, pt, pss, pst, ptt } = if rational { self.divided() } else { self };
+        let plain = |x: f64x4<S>| DVec4::from_array(x.into());
+        Jet { p: plain(p), ps: plain(ps), pt: plain(pt), pss: plain(pss), pst: plain(pst), ptt: plain(ptt) }
+    }
+
+    /// By the quotient rule (The NURBS Book, equations 4.8 and 4.20), the weights left as they are.
+    #[inline(always)]
+    fn divided(self) -> Self {
+        let Self { p, ps, pt, pss, pst, ptt } = self;
+        let simd = p.simd;
+        let (w, ws, wt, wss, wst, wtt) = (p[3], ps[3], pt[3], pss[3], pst[3], ptt[3]);
+        let r = 1.0 / w;
+        // the factors of a whole quotient, and of one whose fourth coordinate takes no part in what follows
+        let (whole, point) = (f64x4::simd_from(simd, [r, r, r, 1.0]), f64x4::simd_from(simd, [r, r, r, 0.0]));
+        let at = p * point;
+        let (by_s, by_t) = (ps - at * ws, pt - at * wt);
+        let (along_s, along_t) = (by_s * point, by_t * point);
+        Self {
+            p: p * whole,
+            ps: by_s * whole,
+            pt: by_t * whole,
+            pss: (pss - along_s * (2.0 * ws) - at * wss) * whole,
+            pst: (pst - along_t * ws - along_s * wt - at * wst) * whole,
+            ptt: (ptt - along_t * (2.0 * wt) - at * wtt) * whole,
         }
     }
 }
 
-fn curve<const N: usize>(net: &[DVec4], p: usize, s: f64) -> Jet {
+#[inline(always)]
+fn curve<S: Simd, const N: usize>(simd: S, net: &[DVec4], p: usize, s: f64) -> Homogeneous<S> {
     let b = basis::<N>(p, s);
-    let mut jet = Jet::default();
+    let mut sum = Homogeneous::zero(simd);
     for (i, a) in net[..=p].iter().enumerate() {
-        jet.p += b[0][i] * *a;
-        jet.ps += b[1][i] * *a;
-        jet.pss += b[2][i] * *a;
+        let a = f64x4::simd_from(simd, a.to_array());
+        sum.p += a * b[0][i];
+        sum.ps += a * b[1][i];
+        sum.pss += a * b[2][i];
     }
-    jet
+    sum
 }
 
-fn surface<const N: usize, const M: usize>(net: &[DVec4], p: usize, q: usize, s: f64, t: f64) -> Jet {
+#[inline(always)]
+fn surface<S: Simd, const N: usize, const M: usize>(
+    simd: S,
+    net: &[DVec4],
+    p: usize,
+    q: usize,
+    s: f64,
+    t: f64,
+) -> Homogeneous<S> {
     let (bs, bt) = (basis::<N>(p, s), basis::<M>(q, t));
-    let mut jet = Jet::default();
+    let mut sum = Homogeneous::zero(simd);
     for (i, row) in net[..(p + 1) * (q + 1)].chunks_exact(q + 1).enumerate() {
-        let mut line = [DVec4::ZERO; 3];
+        let mut line = [f64x4::splat(simd, 0.0); 3];
         for (j, a) in row.iter().enumerate() {
-            line[0] += bt[0][j] * *a;
-            line[1] += bt[1][j] * *a;
-            line[2] += bt[2][j] * *a;
+            let a = f64x4::simd_from(simd, a.to_array());
+            line[0] += a * bt[0][j];
+            line[1] += a * bt[1][j];
+            line[2] += a * bt[2][j];
         }
-        jet.p += bs[0][i] * line[0];
-        jet.ps += bs[1][i] * line[0];
-        jet.pt += bs[0][i] * line[1];
-        jet.pss += bs[2][i] * line[0];
-        jet.pst += bs[1][i] * line[1];
-        jet.ptt += bs[0][i] * line[2];
+        sum.p += line[0] * bs[0][i];
+        sum.ps += line[0] * bs[1][i];
+        sum.pt += line[1] * bs[0][i];
+        sum.pss += line[0] * bs[2][i];
+        sum.pst += line[1] * bs[1][i];
+        sum.ptt += line[2] * bs[0][i];
     }
-    jet
+    sum
 }
+
+/// The degrees without loops of their own, apart from the others: their tables take much of the stack.
+#[inline(never)]
+fn any_curve<S: Simd>(simd: S, net: &[DVec4], p: usize, s: f64) -> Homogeneous<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || curve::<S, MOST>(simd, net, p, s),
+    )
+}
+
+#[inline(never)]
+fn any_surface<S: Simd>(simd: S, net: &[DVec4], p: usize, q: usize, s: f64, t: f64) -> Homogeneous<S> {
+    simd.vectorize(
+        #[inline(always)]
+        || surface::<S, MOST, MOST>(simd, net, p, q, s, t),
+    )
+}
+
+/// Basis functions of the highest degree.
+const MOST: usize = 26;
 
 /// The Bernstein polynomials of degree `n` at `x` and their first two derivatives; `N > n`.
 #[inline(always)]

@@ -1,19 +1,25 @@
 //! A leaf of the hierarchy: a Bézier piece about its own origin, with its boxes and tables.
 
+use std::sync::OnceLock;
+
+use fearless_simd::Level;
 use glam::{DVec3, DVec4};
 use perpend_kernel::{Aabb, Direction, cartesian};
 
-use super::form::{Shape, Tables};
+use super::form::{self, Shape};
 use super::frame::power_of_two_below;
 use super::jet::Jet;
 use super::oriented_box::OrientedBox;
 use super::piece::Piece;
+use super::ranges::Ranges;
 
 /// A piece ready for queries. All coordinates are the entity's own, and `net` is relative to `origin`.
 #[derive(Debug)]
 pub(super) struct Leaf {
     pub degree: (usize, usize),
     pub rational: bool,
+    /// What the processor can do: changes times, and no bit.
+    pub level: Level,
     /// Homogeneous control points about `origin`, weights scaled so that the largest lies in `[1, 2)`.
     pub net: Vec<DVec4>,
     /// Middle of the box.
@@ -28,14 +34,21 @@ pub(super) struct Leaf {
     pub v: (f64, f64),
     pub bounds: Aabb,
     oriented: OrientedBox,
-    pub tables: Tables,
+    opened: OnceLock<Opened>,
     /// The middle point and the pseudo-inverse of the derivatives there: a linear guess of the foot.
     middle: DVec3,
     inverse: [DVec3; 2],
 }
 
+/// What a leaf's first proof makes.
+#[derive(Debug)]
+pub(super) struct Opened {
+    pub tables: Box<[f64]>,
+    pub ranges: Ranges,
+}
+
 impl Leaf {
-    pub(super) fn new(piece: Piece, rational: bool) -> Self {
+    pub(super) fn new(piece: Piece, rational: bool, level: Level) -> Self {
         let Piece { degree, mut net, u, v } = piece;
         let (p, q) = degree;
         let bounds = Aabb::around(net.iter().map(|h| cartesian(*h)));
@@ -50,10 +63,11 @@ impl Leaf {
         let radius = local.iter().fold(0.0_f64, |r, x| r.max(x.length()));
         let (lightest, heaviest) = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
         let (along, across) = directions(&local, degree);
-        let middle = Jet::at(&net, (p, q), 0.5, 0.5).cartesian();
+        let middle = Jet::at(level, &net, (p, q), rational, 0.5, 0.5);
         Self {
             degree,
             rational,
+            level,
             net,
             origin,
             radius,
@@ -63,18 +77,39 @@ impl Leaf {
             v,
             bounds,
             oriented: OrientedBox::around(&local, along, across),
-            tables: Tables::default(),
-            middle: middle.p,
-            inverse: pseudo_inverse(middle.ps, middle.pt),
+            opened: OnceLock::new(),
+            middle: middle.point(),
+            inverse: pseudo_inverse(middle.ps.truncate(), middle.pt.truncate()),
         }
     }
 
     pub(super) fn jet(&self, s: f64, t: f64) -> Jet {
-        Jet::at(&self.net, self.degree, s, t)
+        Jet::at(self.level, &self.net, self.degree, self.rational, s, t)
     }
 
     pub(super) fn shape(&self) -> Shape<'_> {
         Shape { degree: self.degree, rational: self.rational, net: &self.net }
+    }
+
+    /// Tables and ranges of the leaf's form; made when first asked for, as most leaves of a large entity never are.
+    pub(super) fn opened(&self) -> &Opened {
+        self.opened.get_or_init(|| {
+            let tables = form::tables(self.shape());
+            let ranges = Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, self.heaviest);
+            Opened { tables, ranges }
+        })
+    }
+
+    /// A vector along the axes of the oriented box.
+    pub(super) fn along_axes(&self, x: DVec3) -> DVec3 {
+        *self.oriented.axes() * x
+    }
+
+    /// The corner point at `(s, t)`, both 0 or 1, about the origin.
+    pub(super) fn corner(&self, s: f64, t: f64) -> DVec3 {
+        let (p, q) = self.degree;
+        let at = |x: f64, degree: usize| if x > 0.0 { degree } else { 0 };
+        cartesian(self.net[at(s, p) * (q + 1) + at(t, q)])
     }
 
     /// The foot if the leaf were the affine map that it is in its middle, not yet inside the leaf.
@@ -83,9 +118,19 @@ impl Leaf {
         (0.5 + self.inverse[0].dot(y), 0.5 + self.inverse[1].dot(y))
     }
 
+    /// The point in the middle of the parameters, about the origin.
+    pub(super) fn middle(&self) -> DVec3 {
+        self.middle
+    }
+
     /// A lower bound of the squared distance from `p` to the leaf, from its boxes.
     pub(super) fn box_distance_squared(&self, p: DVec3) -> f64 {
-        self.bounds.distance_squared(p).max(self.oriented.distance_squared(p - self.origin))
+        self.bounds.distance_squared(p).max(self.oriented_distance_squared(p))
+    }
+
+    /// The same from its oriented box alone.
+    pub(super) fn oriented_distance_squared(&self, p: DVec3) -> f64 {
+        self.oriented.distance_squared(p - self.origin)
     }
 
     /// The leaf as a piece again, about the entity's origin.
@@ -98,7 +143,7 @@ impl Leaf {
     pub(super) fn refine(&self) -> (Direction, [Self; 2]) {
         let piece = self.piece();
         let direction = piece.longer();
-        (direction, piece.halves(direction).map(|half| Self::new(half, self.rational)))
+        (direction, piece.halves(direction).map(|half| Self::new(half, self.rational, self.level)))
     }
 
     /// The definition's parameters at `(s, t)`; the ends of the leaf exactly.

@@ -2,8 +2,9 @@
 
 use glam::DVec3;
 
-use super::jet::{CartesianJet, Jet};
+use super::jet::Jet;
 use super::leaf::Leaf;
+use super::state::Foot;
 use super::{ROUNDING, squared};
 use crate::statistics::Work;
 
@@ -15,6 +16,8 @@ pub(super) struct Found {
     pub s: f64,
     pub t: f64,
     pub jet: Jet,
+    /// Where a step of Newton's method leads from here; the point itself where the box holds it.
+    pub next: (f64, f64),
 }
 
 /// A box of a leaf's parameters.
@@ -41,9 +44,8 @@ impl Domain {
 pub(super) struct Search {
     pub domain: Domain,
     pub start: (f64, f64),
-    /// The evaluation at the start, where the caller has it.
-    pub known: Option<Jet>,
-    pub iterations: u32,
+    /// How many points are evaluated at most.
+    pub evaluations: u32,
     /// Stops when the next step would lower the squared distance by less than this. A step size in the parameter would be the
     /// wrong measure: it says nothing of the distance.
     pub decrease: f64,
@@ -58,97 +60,120 @@ pub(super) fn search(
     done: &mut Work,
     mut visit: impl FnMut(&Found) -> bool,
 ) -> Found {
-    let Search { domain, start: (mut s, mut t), mut known, iterations, decrease } = search;
-    let one = leaf.degree.1 == 0;
-    let mut best: Option<(f64, Found)> = None;
-    for _ in 0..iterations.max(1) {
-        let jet = known.take().unwrap_or_else(|| {
-            done.evaluations += 1;
-            leaf.jet(s, t)
-        });
-        let c = jet.cartesian();
-        let r = c.p - x;
-        let squared = r.length_squared();
-        match &best {
-            Some((least, found)) if squared >= *least => {
-                // halve back towards the best point, unless there is nothing left to gain beside rounding
-                let (half_s, half_t) = (0.5 * (s + found.s), 0.5 * (t + found.t));
-                let worse = squared - least;
-                if (half_s - s).abs() + (half_t - t).abs() < 1e-15 || worse <= decrease.max(8.0 * ROUNDING * least) {
-                    break;
-                }
-                (s, t) = (half_s, half_t);
-                continue;
-            }
-            _ => {
-                let found = Found { distance: squared.sqrt(), s, t, jet };
-                best = Some((squared, found));
-                if visit(&found) {
-                    break;
-                }
-            }
-        }
-        let Some(((ds, dt), promised)) = newton_step(&domain, one, (s, t), &c, r) else { break };
-        done.newton += 1;
-        let (next_s, next_t) = domain.clamp(s + ds, t + dt);
-        let moved = (next_s - s).abs().max((next_t - t).abs());
-        (s, t) = (next_s, next_t);
-        if moved < 1e-15 || promised <= decrease {
+    let Search { domain, start, evaluations, decrease } = search;
+    let mut best = evaluate(leaf, x, &domain, start);
+    let mut evaluated = 1;
+    'improving: loop {
+        if visit(&best.found) || best.promised <= decrease || best.moves < 1e-15 {
             break;
         }
+        let least = best.squared;
+        let (mut s, mut t) = best.found.next;
+        loop {
+            if evaluated >= evaluations {
+                break 'improving;
+            }
+            evaluated += 1;
+            let there = evaluate(leaf, x, &domain, (s, t));
+            if there.squared < least {
+                best = there;
+                break;
+            }
+            // halve back towards the best point, unless there is nothing left to gain beside rounding
+            let (half_s, half_t) = (0.5 * (s + best.found.s), 0.5 * (t + best.found.t));
+            let close = (half_s - s).abs() + (half_t - t).abs() < 1e-15;
+            if close || there.squared - least <= decrease.max(8.0 * ROUNDING * least) {
+                break 'improving;
+            }
+            (s, t) = (half_s, half_t);
+        }
     }
-    best.expect("the start is a point").1
+    done.evaluations += u64::from(evaluated);
+    done.newton += u64::from(evaluated);
+    best.found
 }
 
-/// The foot near `start` as exactly as its coordinates allow.
+/// The point of a leaf at these parameters.
+pub(super) fn point(leaf: &Leaf, x: DVec3, at: (f64, f64)) -> Found {
+    evaluate(leaf, x, &Domain::WHOLE, at).found
+}
+
+/// An evaluated point and the step from it.
+struct Evaluated {
+    found: Found,
+    squared: f64,
+    /// The decrease of half `D` that the step's slope promises.
+    promised: f64,
+    /// The longer of its two parts.
+    moves: f64,
+}
+
+#[inline]
+fn evaluate(leaf: &Leaf, x: DVec3, domain: &Domain, (s, t): (f64, f64)) -> Evaluated {
+    let jet = leaf.jet(s, t);
+    let r = jet.point() - x;
+    let squared = r.length_squared();
+    let (next, promised) = newton_step(domain, leaf.degree.1 == 0, (s, t), &jet, r);
+    let moves = (next.0 - s).abs().max((next.1 - t).abs());
+    Evaluated { found: Found { distance: squared.sqrt(), s, t, jet, next }, squared, promised, moves }
+}
+
+/// A foot as exactly as its coordinates allow, at parameters of the definition.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Polished {
+    /// Parameters of the definition.
+    pub u: f64,
+    pub v: f64,
+    /// At the leaf's parameters of these.
+    pub found: Found,
+}
+
+/// The foot near a point of a leaf as exactly as its coordinates allow.
 ///
 /// Squared distances that differ by rounding alone cannot tell two points apart: near the surface they leave half the digits of
 /// the parameters open. What tells is the part of `S - x` along the directions in which the point may still move; Newton's
-/// steps are taken while that falls.
-pub(super) fn polish(leaf: &Leaf, x: DVec3, start: (f64, f64), known: Option<Jet>, done: &mut Work) -> Found {
-    let (domain, one) = (Domain::WHOLE, leaf.degree.1 == 0);
-    // a slower direction is one of rounding: a pole has none along its edge
-    let slowest = squared(64.0 * ROUNDING * leaf.radius);
-    let mut evaluate = |s: f64, t: f64, jet: Option<Jet>| {
-        let jet = jet.unwrap_or_else(|| {
-            done.evaluations += 1;
-            leaf.jet(s, t)
-        });
-        let c = jet.cartesian();
-        let r = c.p - x;
-        let found = Found { distance: r.length(), s, t, jet };
-        (found, c, r, residual(&domain, one, (s, t), &c, r, slowest))
+/// steps are taken while that falls. Every point is evaluated at parameters that the definition's own round to, so that
+/// the last is the answer.
+pub(super) fn polish(leaf: &Leaf, x: DVec3, foot: &Foot, done: &mut Work) -> Polished {
+    let mut evaluate = |at: (f64, f64)| {
+        done.evaluations += 1;
+        let (u, v) = leaf.parameters(at.0, at.1);
+        let Evaluated { found, .. } = evaluate(leaf, x, &Domain::WHOLE, leaf.own_parameters(u, v));
+        (Polished { u, v, found }, residual(leaf, x, &found))
     };
-    let (mut best, mut c, mut r, mut left) = evaluate(start.0, start.1, known);
-    let mut steps = 0;
-    for _ in 0..POLISHING {
-        let Some(((ds, dt), _)) = newton_step(&domain, one, (best.s, best.t), &c, r) else { break };
-        let (s, t) = domain.clamp(best.s + ds, best.t + dt);
-        if (s, t) == (best.s, best.t) || left <= squared(ROUNDING * (best.distance + leaf.radius)) {
-            break;
-        }
-        let next = evaluate(s, t, None);
-        steps += 1;
-        let noise = 4.0 * ROUNDING * (best.distance + leaf.radius);
-        if next.3 >= left || next.0.distance > best.distance + noise {
-            break;
-        }
-        (best, c, r, left) = next;
+    let noise = |distance: f64| 4.0 * ROUNDING * (distance + leaf.radius);
+    let (mut best, mut left) = evaluate(foot.next);
+    if best.found.distance > foot.distance + noise(foot.distance) {
+        (best, left) = evaluate((foot.s, foot.t));
     }
-    done.newton += steps;
+    for _ in 0..POLISHING {
+        let rests = best.found.next == (best.found.s, best.found.t);
+        if rests || left <= squared(noise(best.found.distance)) {
+            break;
+        }
+        let (there, left_there) = evaluate(best.found.next);
+        if left_there >= left || there.found.distance > best.found.distance + noise(best.found.distance) {
+            break;
+        }
+        (best, left) = (there, left_there);
+    }
     best
 }
 
 /// Steps of [`polish`]: from where a search ends, Newton's method needs one or two; a flat minimum is approached by a factor.
 const POLISHING: u32 = 10;
 
-/// The squared length of the part of `r` along the directions in which a point of the box may still move.
-fn residual(domain: &Domain, one: bool, (s, t): (f64, f64), c: &CartesianJet, r: DVec3, slowest: f64) -> f64 {
-    let along = |x: f64, range: (f64, f64), d: DVec3| {
+/// The squared length of the part of `S - x` along the directions in which a point of the leaf may still move.
+fn residual(leaf: &Leaf, x: DVec3, Found { s, t, jet, .. }: &Found) -> f64 {
+    // a slower direction is one of rounding: a pole has none along its edge
+    let slowest = squared(64.0 * ROUNDING * leaf.radius);
+    let r = jet.point() - x;
+    let along = |at: f64, range: (f64, f64), d: DVec3| {
         let (g, dd) = (r.dot(d), d.length_squared());
-        if is_held(x, range, g) || dd <= slowest { 0.0 } else { g * g / dd }
+        if is_held(at, range, g) || dd <= slowest { 0.0 } else { g * g / dd }
     };
-    along(s, domain.s, c.ps) + if one { 0.0 } else { along(t, domain.t, c.pt) }
+    let one = leaf.degree.1 == 0;
+    along(*s, (0.0, 1.0), jet.ps.truncate()) + if one { 0.0 } else { along(*t, (0.0, 1.0), jet.pt.truncate()) }
 }
 
 /// Whether a point at a border of its range would leave it downhill.
@@ -156,41 +181,53 @@ fn is_held(x: f64, (from, to): (f64, f64), slope: f64) -> bool {
     (x <= from && slope >= 0.0) || (x >= to && slope <= 0.0)
 }
 
-/// A Newton step for half of `D = |S - x|²`, with the decrease of half `D` that its slope promises; none where the box holds
-/// the point in every direction.
-fn newton_step(
-    domain: &Domain,
-    one: bool,
-    (s, t): (f64, f64),
-    c: &CartesianJet,
-    r: DVec3,
-) -> Option<((f64, f64), f64)> {
+/// Where a Newton step for half of `D = |S - x|²` leads within the box, and the decrease of half `D` that its slope promises; nowhere, and 0, where
+/// the box holds the point in every direction.
+#[inline]
+fn newton_step(domain: &Domain, one: bool, (s, t): (f64, f64), c: &Jet, r: DVec3) -> ((f64, f64), f64) {
     // half the gradient and half the Hessian of D
-    let (gs, gt) = (r.dot(c.ps), r.dot(c.pt));
-    let (ss, tt) = (c.ps.length_squared(), c.pt.length_squared());
-    let (hss, hst, htt) = (ss + r.dot(c.pss), c.ps.dot(c.pt) + r.dot(c.pst), tt + r.dot(c.ptt));
-    let (ds, dt) = match (is_held(s, domain.s, gs), one || is_held(t, domain.t, gt)) {
-        (true, true) => return None,
-        (true, false) => (0.0, step(gt, htt, tt)),
-        (false, true) => (step(gs, hss, ss), 0.0),
-        (false, false) => {
-            let (ds, dt) = step2((gs, gt), (hss, hst, htt), (ss, tt));
-            let (to_s, to_t) = domain.clamp(s + ds, t + dt);
-            // the border stops a parameter: what is left of the slope there leads the other, else the step may lead uphill
-            let stopped_s = (to_s != s + ds).then(|| {
-                let ds = to_s - s;
-                (ds, domain.clamp(s, t + step(gt + hst * ds, htt, tt)).1 - t)
-            });
-            let stopped_t = (to_t != t + dt).then(|| {
-                let dt = to_t - t;
-                (domain.clamp(s + step(gs + hst * dt, hss, ss), t).0 - s, dt)
-            });
-            let model = |(a, b): &(f64, f64)| gs * a + gt * b + 0.5 * (hss * a * a + htt * b * b) + hst * a * b;
-            let stopped = [stopped_s, stopped_t].into_iter().flatten();
-            stopped.min_by(|a, b| model(a).total_cmp(&model(b))).unwrap_or((ds, dt))
+    let (ps, pss) = (c.ps.truncate(), c.pss.truncate());
+    let (gs, ss) = (r.dot(ps), ps.length_squared());
+    let hss = ss + r.dot(pss);
+    if one {
+        if is_held(s, domain.s, gs) {
+            return ((s, t), 0.0);
         }
+        let ds = step(gs, hss, ss);
+        return (domain.clamp(s + ds, t), -gs * ds);
+    }
+    let (pt, pst, ptt) = (c.pt.truncate(), c.pst.truncate(), c.ptt.truncate());
+    let (gt, tt) = (r.dot(pt), pt.length_squared());
+    let (hst, htt) = (ps.dot(pt) + r.dot(pst), tt + r.dot(ptt));
+    let (ds, dt) = match (is_held(s, domain.s, gs), is_held(t, domain.t, gt)) {
+        (true, true) => return ((s, t), 0.0),
+        (true, false) => {
+            let dt = step(gt, htt, tt);
+            return (domain.clamp(s, t + dt), -gt * dt);
+        }
+        (false, true) => {
+            let ds = step(gs, hss, ss);
+            return (domain.clamp(s + ds, t), -gs * ds);
+        }
+        (false, false) => step2((gs, gt), (hss, hst, htt), (ss, tt)),
     };
-    Some(((ds, dt), -(gs * ds + gt * dt)))
+    let (to_s, to_t) = domain.clamp(s + ds, t + dt);
+    if (to_s, to_t) == (s + ds, t + dt) {
+        return ((to_s, to_t), -(gs * ds + gt * dt));
+    }
+    // the border stops a parameter: what is left of the slope there leads the other, else the step may lead uphill
+    let stopped_s = (to_s != s + ds).then(|| {
+        let ds = to_s - s;
+        (ds, domain.clamp(s, t + step(gt + hst * ds, htt, tt)).1 - t)
+    });
+    let stopped_t = (to_t != t + dt).then(|| {
+        let dt = to_t - t;
+        (domain.clamp(s + step(gs + hst * dt, hss, ss), t).0 - s, dt)
+    });
+    let model = |(a, b): &(f64, f64)| gs * a + gt * b + 0.5 * (hss * a * a + htt * b * b) + hst * a * b;
+    let stopped = [stopped_s, stopped_t].into_iter().flatten();
+    let (ds, dt) = stopped.min_by(|a, b| model(a).total_cmp(&model(b))).unwrap_or((ds, dt));
+    (domain.clamp(s + ds, t + dt), -(gs * ds + gt * dt))
 }
 
 /// One Newton step in one parameter. The second derivative is used wherever it is positive, however small (beside a centre of

@@ -31,6 +31,11 @@ impl OrientedBox {
         Self { axes, extent: Aabb { min: bounds.min - margin, max: bounds.max + margin } }
     }
 
+    /// The axes, as rows.
+    pub(super) fn axes(&self) -> &DMat3 {
+        &self.axes
+    }
+
     /// Square of the distance from `x` to the box, less a margin: what is left of the axes' orthonormality stretches it by
     /// at most 9 u, and the product with them rounds by 6 u.
     pub(super) fn distance_squared(&self, x: DVec3) -> f64 {

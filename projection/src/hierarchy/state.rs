@@ -1,9 +1,7 @@
 //! What is known so far of one query.
 
 use glam::DVec3;
-use smallvec::SmallVec;
 
-use super::jet::Jet;
 use crate::statistics::Work;
 
 /// A point of the entity.
@@ -14,6 +12,8 @@ pub(super) struct Foot {
     /// Parameters in that leaf.
     pub s: f64,
     pub t: f64,
+    /// Where a step of Newton's method leads from there.
+    pub next: (f64, f64),
     /// In the entity's coordinates.
     pub point: DVec3,
     pub distance: f64,
@@ -33,6 +33,7 @@ pub(super) struct Goal {
 impl Goal {
     /// The distance that a proof must reach while the best point is at `distance`: nothing nearer than this. It falls with
     /// `distance`.
+    #[inline]
     pub(super) fn tau(&self, distance: f64) -> f64 {
         let sought = (distance - self.gap).max(0.0);
         let sought = if distance > self.wanted { sought.max(self.wanted) } else { sought };
@@ -42,15 +43,13 @@ impl Goal {
 
 /// The state of one query, shared by all leaves. All lengths are in the entity's own coordinates.
 #[derive(Debug)]
-pub(super) struct State {
+pub(super) struct State<'m> {
     pub point: DVec3,
     pub goal: Goal,
     /// The nearest point so far.
     pub best: Foot,
-    /// Its evaluation, where it was made in the prepared leaf itself and not in a part of it.
-    pub best_jet: Option<Jet>,
     /// Feet met on the way that are nearest within the gap, for the answer's multiplicity.
-    pub met: SmallVec<[Foot; MET]>,
+    pub met: &'m mut Vec<Foot>,
     /// The least lower bound of the boxes that were left open.
     pub open: f64,
     /// Splits that are left.
@@ -58,8 +57,9 @@ pub(super) struct State {
     pub done: Work,
 }
 
-impl State {
+impl State<'_> {
     /// The distance that a proof must reach: nothing nearer than this.
+    #[inline]
     pub(super) fn tau(&self) -> f64 {
         self.goal.tau(self.best.distance)
     }
@@ -76,12 +76,12 @@ impl State {
         (reach - tau) * (reach + tau)
     }
 
-    /// Takes note of a point, and of its evaluation if that was made in the prepared leaf.
-    pub(super) fn offer(&mut self, foot: Foot, jet: Option<Jet>) {
-        let apart = |met: &Foot| met.distance > self.best.distance + self.goal.gap;
+    /// Takes note of a point.
+    pub(super) fn offer(&mut self, foot: Foot) {
         if foot.distance <= self.best.distance + self.goal.gap {
             if self.met.len() == MET {
-                self.met.retain(|met| !apart(met));
+                let reach = self.best.distance + self.goal.gap;
+                self.met.retain(|met| met.distance <= reach);
             }
             if self.met.len() < MET {
                 self.met.push(foot);
@@ -89,7 +89,6 @@ impl State {
         }
         if foot.distance < self.best.distance {
             self.best = foot;
-            self.best_jet = jet;
         }
     }
 }

@@ -13,9 +13,10 @@ use glam::DVec3;
 
 use super::certify::Part;
 use super::convex::{self, Patch};
-use super::form::rounding_bound;
+use super::form::{form, rounding_bound};
 use super::leaf::Leaf;
 use super::newton::{self, Domain, Found, Search};
+use super::reply::Settled;
 use super::state::{Foot, State};
 use super::{Hierarchy, LocalSolution, ROUNDING, Workspace, holds, net, squared};
 use crate::answer::ParameterBox;
@@ -58,14 +59,16 @@ impl Hierarchy {
     /// The nearest points; none where nothing is within the query's `max_distance`.
     pub(crate) fn ties(&self, query: &Query, workspace: &mut Workspace) -> Option<TieSet> {
         let mut nearest = self.project(query, None, workspace)?;
-        let mut state = self.start(query);
+        let near = self.near(&nearest, query);
+        let Workspace { candidates, met, .. } = workspace;
+        let mut state = self.state(query, near, met);
         let coincidence = self.coincidence(query);
         let reach = nearest.distance + state.goal.gap.max(self.asked_gap(query));
-        workspace.candidates.clear();
-        self.tree.nearer_than(state.point, squared(reach) * (1.0 + 8.0 * ROUNDING), &mut workspace.candidates);
-        workspace.candidates.sort_unstable_by_key(|candidate| candidate.item);
+        candidates.clear();
+        self.tree.nearer_than(state.point, squared(reach) * (1.0 + 8.0 * ROUNDING), candidates);
+        candidates.sort_unstable_by_key(|candidate| candidate.item);
         let (mut feet, mut undecided) = (Vec::new(), Vec::new());
-        for candidate in &workspace.candidates {
+        for candidate in candidates.iter() {
             let leaf = &self.leaves[candidate.item as usize];
             if leaf.box_distance_squared(state.point) <= squared(reach) {
                 let part = Part { leaf, index: candidate.item, within: Domain::WHOLE };
@@ -85,10 +88,10 @@ impl Hierarchy {
             (true, 0 | 1) => Tie::None,
             (true, _) => Tie::Apart,
         };
-        let at_nearest = |foot: &Foot| foot.point.distance(state.point + nearest.offset) <= coincidence;
-        let solution = |foot: &Foot| match at_nearest(foot) {
+        let at_nearest = |foot: &Settled| foot.point.distance(state.point + nearest.offset) <= coincidence;
+        let solution = |foot: &Settled| match at_nearest(foot) {
             true => nearest.clone(),
-            false => LocalSolution { tie: nearest.tie, ..self.solution_at(foot, nearest.lower_bound, &state) },
+            false => self.solution_at(foot, nearest.tie, nearest.lower_bound, &state),
         };
         let in_continuum = continua.iter().flatten().any(|b| holds(b.u, nearest.u) && holds(b.v, nearest.v));
         let found = in_continuum || feet.iter().any(at_nearest);
@@ -101,13 +104,20 @@ impl Hierarchy {
         Some(TieSet { feet, continua, complete: found && state.work > 0, nearest })
     }
 
+    /// A solution as a foot of its leaf.
+    fn near(&self, solution: &LocalSolution, query: &Query) -> Foot {
+        let part = self.part(self.leaf_at(solution.u, solution.v));
+        let x = self.frame.enter(query.point) - part.leaf.origin;
+        part.foot(&newton::point(part.leaf, x, part.leaf.own_parameters(solution.u, solution.v)))
+    }
+
     /// Splits a leaf until every box is decided or narrow.
     fn sift(
         &self,
         part: Part<'_>,
         reach: f64,
         coincidence: f64,
-        state: &mut State,
+        state: &mut State<'_>,
         feet: &mut Vec<Foot>,
         undecided: &mut Vec<Undecided>,
     ) {
@@ -115,10 +125,10 @@ impl Hierarchy {
         let x = state.point - leaf.origin;
         let threshold = if leaf.rational { 0.0 } else { squared(reach) };
         let (m, n) = leaf.shape().form_degree();
-        let mut form = Vec::new();
-        leaf.tables.form(leaf.shape(), x, reach, &mut form);
+        let mut net = Vec::new();
+        form(leaf.shape(), &leaf.opened().tables, x, reach, &mut net);
         let rounding = rounding_bound(leaf.degree, x.length(), leaf.radius, reach, leaf.heaviest);
-        let mut cells = vec![Cell { net: form, m, n, domain: Domain::WHOLE, rounding }];
+        let mut cells = vec![Cell { net, m, n, domain: Domain::WHOLE, rounding }];
         let mut matrices = Vec::new();
         let resolution = coincidence.max(RESOLUTION);
         while let Some(mut cell) = cells.pop() {
@@ -154,7 +164,7 @@ impl Hierarchy {
     }
 
     /// The one point that Newton's method leads to from all boxes of a set, if it is one.
-    fn common_foot(&self, set: &[Undecided], coincidence: f64, state: &mut State) -> Option<Foot> {
+    fn common_foot(&self, set: &[Undecided], coincidence: f64, state: &mut State<'_>) -> Option<Foot> {
         if set.iter().any(|u| u.wide) {
             return None;
         }
@@ -190,33 +200,33 @@ impl Hierarchy {
         reach: f64,
         coincidence: f64,
         continua: &[Vec<ParameterBox>],
-        state: &mut State,
-    ) -> Vec<Foot> {
-        let mut polished: Vec<((f64, f64), Foot)> = feet
+        state: &mut State<'_>,
+    ) -> Vec<Settled> {
+        let mut polished: Vec<Settled> = feet
             .into_iter()
-            .map(|foot| {
-                let (foot, _) = self.polish(&foot, None, state);
-                (self.leaves[foot.leaf as usize].parameters(foot.s, foot.t), foot)
-            })
-            .filter(|(_, foot)| foot.distance <= reach)
+            .map(|foot| self.polish(&foot, state))
+            .filter(|foot| foot.distance() <= reach)
             .collect();
+        let by_parameters = |a: &Settled, b: &Settled| {
+            let (a, b) = (a.parameters(), b.parameters());
+            a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))
+        };
         // the nearest first: of feet in one valley, cut apart by the borders of leaves, it is the bottom
-        polished.sort_by(|(a, x), (b, y)| {
-            x.distance.total_cmp(&y.distance).then(a.0.total_cmp(&b.0)).then(a.1.total_cmp(&b.1))
-        });
-        let mut distinct: Vec<((f64, f64), Foot)> = Vec::new();
-        for (at, foot) in polished {
+        polished.sort_by(|a, b| a.distance().total_cmp(&b.distance()).then(by_parameters(a, b)));
+        let mut distinct: Vec<Settled> = Vec::new();
+        for foot in polished {
+            let at = foot.parameters();
             let in_continuum = continua.iter().flatten().any(|b| holds(b.u, at.0) && holds(b.v, at.1));
-            let known = |(other_at, other): &((f64, f64), Foot)| {
+            let known = |other: &Settled| {
                 other.point.distance(foot.point) <= coincidence
-                    || !self.is_ridge_between(state.point, *other_at, at, foot.distance)
+                    || !self.is_ridge_between(state.point, other.parameters(), at, foot.distance())
             };
             if !in_continuum && !distinct.iter().any(known) {
-                distinct.push((at, foot));
+                distinct.push(foot);
             }
         }
-        distinct.sort_by(|(a, _), (b, _)| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        distinct.into_iter().map(|(_, foot)| foot).collect()
+        distinct.sort_by(by_parameters);
+        distinct
     }
 
     /// Whether the straight way between two parameters leads farther from `p` than `distance`, by more than rounding.
@@ -229,9 +239,9 @@ impl Hierarchy {
 }
 
 /// The foot inside a box, from `start`, to convergence.
-fn converge(leaf: &Leaf, x: DVec3, domain: Domain, start: (f64, f64), state: &mut State) -> Found {
+fn converge(leaf: &Leaf, x: DVec3, domain: Domain, start: (f64, f64), state: &mut State<'_>) -> Found {
     // a flat minimum is approached by a constant factor only: many iterations, and no early end
-    let search = Search { domain, start, known: None, iterations: 100, decrease: 0.0 };
+    let search = Search { domain, start, evaluations: 100, decrease: 0.0 };
     newton::search(leaf, x, search, &mut state.done, |_| false)
 }
 
@@ -299,7 +309,7 @@ fn diameter(leaf: &Leaf, domain: &Domain) -> f64 {
     let middle = (0.5 * (domain.s.0 + domain.s.1), 0.5 * (domain.t.0 + domain.t.1));
     let corners =
         [(domain.s.0, domain.t.0), (domain.s.0, domain.t.1), (domain.s.1, domain.t.0), (domain.s.1, domain.t.1)];
-    let points = corners.into_iter().chain([middle]).map(|(s, t)| leaf.jet(s, t).cartesian().p);
+    let points = corners.into_iter().chain([middle]).map(|(s, t)| leaf.jet(s, t).point());
     let points: smallvec::SmallVec<[DVec3; 5]> = points.collect();
     points.iter().flat_map(|a| points.iter().map(|b| a.distance(*b))).fold(0.0, f64::max)
 }
@@ -307,7 +317,7 @@ fn diameter(leaf: &Leaf, domain: &Domain) -> f64 {
 /// Whether a box of a leaf is longer in s than in t, across its middle.
 fn is_longer_down(leaf: &Leaf, domain: &Domain) -> bool {
     let middle = (0.5 * (domain.s.0 + domain.s.1), 0.5 * (domain.t.0 + domain.t.1));
-    let at = |s: f64, t: f64| leaf.jet(s, t).cartesian().p;
+    let at = |s: f64, t: f64| leaf.jet(s, t).point();
     let s = at(domain.s.0, middle.1).distance_squared(at(domain.s.1, middle.1));
     let t = at(middle.0, domain.t.0).distance_squared(at(middle.0, domain.t.1));
     s >= t
