@@ -21,6 +21,7 @@
 //!
 //! Reductions may give away a tenth of the margin that the form has at a foot; whether they gave too much, the closing test decides.
 
+use fearless_simd::Level;
 use glam::DVec3;
 
 use super::ROUNDING;
@@ -28,7 +29,7 @@ use super::bound::{least_from, value_error};
 use super::convex::{self, Curvature, Patch};
 use super::form::{form, rounding_bound};
 use super::leaf::Leaf;
-use super::net;
+use super::net::{self, Edge, Layout};
 use super::newton::{self, Domain, Found, Search};
 use super::state::{Foot, State};
 
@@ -37,7 +38,7 @@ use super::state::{Foot, State};
 pub(super) struct Memory {
     nets: Vec<f64>,
     cells: Vec<Cell>,
-    matrices: Vec<[f64; 3]>,
+    matrices: Vec<f64>,
 }
 
 /// A box of the leaf that waits for its proof.
@@ -45,19 +46,13 @@ pub(super) struct Memory {
 struct Cell {
     /// Where its net begins. The nets of the waiting boxes lie in the order of the boxes.
     offset: usize,
-    /// Degrees of its net.
-    m: usize,
-    n: usize,
+    layout: Layout,
     domain: Domain,
     rounding: f64,
     slack: f64,
 }
 
 impl Cell {
-    fn len(&self) -> usize {
-        (self.m + 1) * (self.n + 1)
-    }
-
     fn extent(&self) -> (f64, f64) {
         (self.domain.s.1 - self.domain.s.0, self.domain.t.1 - self.domain.t.0)
     }
@@ -65,7 +60,7 @@ impl Cell {
     /// Too narrow for further splits of the form to tell anything.
     fn is_narrow(&self) -> bool {
         let (s, t) = self.extent();
-        (self.m == 0 || s < 1e-12) && (self.n == 0 || t < 1e-12)
+        (self.layout.m == 0 || s < 1e-12) && (self.layout.n == 0 || t < 1e-12)
     }
 }
 
@@ -139,7 +134,7 @@ pub(super) fn certify(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory
     proof.restart(state, memory);
     let mut splits = 0;
     while let Some(cell) = memory.cells.pop() {
-        memory.nets.truncate(cell.offset + cell.len());
+        memory.nets.truncate(cell.offset + cell.layout.len());
         if state.tau() == 0.0 {
             return Outcome::Closed;
         }
@@ -161,7 +156,7 @@ pub(super) fn certify(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory
                 splits += 1;
                 state.work -= 1;
                 state.done.subdivisions += 1;
-                split(cell, memory);
+                split(leaf.level, cell, memory);
             }
         }
     }
@@ -195,11 +190,11 @@ impl Proof<'_> {
         self.formed = state.tau();
         memory.nets.clear();
         memory.cells.clear();
-        form(leaf.shape(), &leaf.opened().tables, self.x, self.formed, &mut memory.nets);
+        form(leaf.level, leaf.shape(), &leaf.opened().tables, self.x, self.formed, &mut memory.nets);
         state.done.pieces += 1;
-        let (m, n) = leaf.shape().form_degree();
+        let layout = leaf.shape().layout();
         let rounding = rounding_bound(leaf.degree, self.x.length(), leaf.radius, self.formed, leaf.heaviest);
-        memory.cells.push(Cell { offset: 0, m, n, domain: Domain::WHOLE, rounding, slack: 0.0 });
+        memory.cells.push(Cell { offset: 0, layout, domain: Domain::WHOLE, rounding, slack: 0.0 });
     }
 
     /// Whether `tau` fell so far that the form of a rational leaf asks for more than is needed. What is convex or dominated
@@ -218,8 +213,8 @@ impl Proof<'_> {
         let leaf = self.part.leaf;
         let threshold = if leaf.rational { 0.0 } else { state.tau().powi(2) };
         let budget = 0.1 * state.margin() * leaf.lightest * leaf.lightest;
-        let g = &mut memory.nets[cell.offset..cell.offset + cell.len()];
-        let least = net::least(g);
+        let g = &mut memory.nets[cell.offset..cell.offset + cell.layout.len()];
+        let least = net::least(leaf.level, g, cell.layout);
         if least > threshold + cell.rounding + cell.slack {
             self.look_for_tie(least, state);
             return Verdict::Closed;
@@ -227,11 +222,11 @@ impl Proof<'_> {
         if let Some(verdict) = self.corner(cell, g, least, budget, state) {
             return verdict;
         }
-        if reduce_to_edge(&mut cell, g, least, budget) {
+        if reduce_to_edge(leaf.level, &mut cell, g, least, budget) {
             return Verdict::Again(cell);
         }
-        let patch = Patch { g, m: cell.m, n: cell.n, extent: cell.extent(), rounding: cell.rounding };
-        if let Some(curvature) = convex::curvature(patch, &mut memory.matrices) {
+        let patch = Patch { g, layout: cell.layout, extent: cell.extent(), rounding: cell.rounding };
+        if let Some(curvature) = convex::curvature(leaf.level, patch, &mut memory.matrices) {
             if corners_close(cell, g, curvature, threshold) || self.newton_closes(cell, curvature, state) {
                 return Verdict::Closed;
             }
@@ -316,13 +311,13 @@ impl Proof<'_> {
 
     /// Newton's method from where the least coefficient has its Greville point: it may find a nearer point.
     fn newton_from_least(&self, cell: Cell, g: &[f64], state: &mut State<'_>) {
-        let at = (0..g.len()).fold(0, |best, i| if g[i] < g[best] { i } else { best });
-        let (width, (extent_s, extent_t)) = (cell.n + 1, cell.extent());
+        let Layout { m, n } = cell.layout;
+        let indices = (0..=m).flat_map(|i| (0..=n).map(move |j| (i, j)));
+        let value = |(i, j): (usize, usize)| g[cell.layout.at(i, j)];
+        let (i, j) = indices.fold((0, 0), |best, at| if value(at) < value(best) { at } else { best });
+        let (extent_s, extent_t) = cell.extent();
         let share = |i: usize, degree: usize| if degree > 0 { i as f64 / degree as f64 } else { 0.0 };
-        let start = (
-            cell.domain.s.0 + extent_s * share(at / width, cell.m),
-            cell.domain.t.0 + extent_t * share(at % width, cell.n),
-        );
+        let start = (cell.domain.s.0 + extent_s * share(i, m), cell.domain.t.0 + extent_t * share(j, n));
         let decrease = 1e-2 * state.margin();
         let search = Search { domain: cell.domain, start, evaluations: 8, decrease };
         let found = newton::search(self.part.leaf, self.x, search, &mut state.done, |_| false);
@@ -343,13 +338,9 @@ impl Proof<'_> {
 
 /// The corners of a box: index of the coefficient, and parameters. One for each that differs.
 fn corners(cell: Cell) -> impl Iterator<Item = (usize, (f64, f64))> {
-    let (m, n, width) = (cell.m, cell.n, cell.n + 1);
     let Domain { s, t } = cell.domain;
-    [(0, (s.0, t.0)), (n, (s.0, t.1)), (m * width, (s.1, t.0)), (m * width + n, (s.1, t.1))]
-        .into_iter()
-        .enumerate()
-        .filter(move |(k, _)| (n > 0 || k % 2 == 0) && (m > 0 || k / 2 == 0))
-        .map(|(_, corner)| corner)
+    let end = |(from, to): (f64, f64), last: bool| if last { to } else { from };
+    cell.layout.corners().map(move |(at, last_s, last_t)| (at, (end(s, last_s), end(t, last_t))))
 }
 
 fn least_corner(cell: Cell, g: &[f64]) -> f64 {
@@ -357,91 +348,68 @@ fn least_corner(cell: Cell, g: &[f64]) -> f64 {
 }
 
 /// Test 3. Only an edge that holds the least coefficient, up to the budget, can be below all others.
-fn reduce_to_edge(cell: &mut Cell, g: &mut [f64], least: f64, budget: f64) -> bool {
-    let Cell { m, n, .. } = *cell;
-    if m == 0 || n == 0 {
+fn reduce_to_edge(level: Level, cell: &mut Cell, g: &mut [f64], least: f64, budget: f64) -> bool {
+    if cell.layout.m == 0 || cell.layout.n == 0 {
         return false;
     }
-    let (width, rounding) = (n + 1, cell.rounding);
-    // what the reduction gives away where the others stay above by `v`
-    let given = |v: f64| (2.0 * rounding - v).max(0.0);
-    for row in [0, m] {
-        if net::least(&g[row * width..(row + 1) * width]) > least + budget {
-            continue;
-        }
-        let given = given(net::rows_above(g, width, row));
-        if given <= budget {
-            g.copy_within(row * width..(row + 1) * width, 0);
-            let at = if row == 0 { cell.domain.s.0 } else { cell.domain.s.1 };
-            cell.domain.s = (at, at);
-            cell.m = 0;
-            cell.slack += given;
-            return true;
-        }
+    // what the reduction gives away where the others stay above by `above`
+    let allowed = budget - 2.0 * cell.rounding;
+    let Some((edge, above)) = net::edge_below(level, g, cell.layout, least + budget, allowed) else { return false };
+    cell.layout = net::take_edge(g, cell.layout, edge);
+    cell.slack += (2.0 * cell.rounding - above).max(0.0);
+    let end = |(from, to): (f64, f64), last: bool| if last { (to, to) } else { (from, from) };
+    match edge {
+        Edge::Row { last } => cell.domain.s = end(cell.domain.s, last),
+        Edge::Column { last } => cell.domain.t = end(cell.domain.t, last),
     }
-    for column in [0, n] {
-        if (0..=m).all(|i| g[i * width + column] > least + budget) {
-            continue;
-        }
-        let given = given(net::columns_above(g, width, column, -budget));
-        if given <= budget {
-            for i in 0..=m {
-                g[i] = g[i * width + column];
-            }
-            let at = if column == 0 { cell.domain.t.0 } else { cell.domain.t.1 };
-            cell.domain.t = (at, at);
-            cell.n = 0;
-            cell.slack += given;
-            return true;
-        }
-    }
-    false
+    true
 }
 
 /// Test 4 at the corners, where value and gradient are coefficients: `G = g ± rounding`, `Gs = m (g_1 - g_0) ± 2 m rounding` over the box.
 fn corners_close(cell: Cell, g: &[f64], curvature: Curvature, threshold: f64) -> bool {
-    let (m, n, width) = (cell.m, cell.n, cell.n + 1);
+    let Layout { m, n } = cell.layout;
     let (extent_s, extent_t) = cell.extent();
     let needed = threshold + cell.rounding + cell.slack;
-    corners(cell).any(|(at, (s, t))| {
+    cell.layout.corners().any(|(at, last_s, last_t)| {
         let mut bound = g[at];
         let mut inward = |neighbour: usize, degree: usize, curvature: f64| {
             let (slope, error) = ((g[neighbour] - g[at]) * degree as f64, 2.0 * degree as f64 * cell.rounding);
             bound += convex::descent(slope, error, curvature, 0.0, 1.0);
         };
+        let (i, j) = (if last_s { m } else { 0 }, if last_t { n } else { 0 });
+        let next = |k: usize, last: bool| if last { k - 1 } else { k + 1 };
         if m > 0 {
-            inward(if s == cell.domain.s.0 { at + width } else { at - width }, m, curvature.s * extent_s * extent_s);
+            inward(cell.layout.at(next(i, last_s), j), m, curvature.s * extent_s * extent_s);
         }
         if n > 0 {
-            inward(if t == cell.domain.t.0 { at + 1 } else { at - 1 }, n, curvature.t * extent_t * extent_t);
+            inward(cell.layout.at(i, next(j, last_t)), n, curvature.t * extent_t * extent_t);
         }
         bound > needed
     })
 }
 
 /// Halves a box, whose net lies at the end of the nets; the half with the lesser coefficients is looked at first.
-fn split(cell: Cell, memory: &mut Memory) {
-    let (len, width) = (cell.len(), cell.n + 1);
-    let (_, largest) = net::extremes(&memory.nets[cell.offset..]);
+fn split(level: Level, cell: Cell, memory: &mut Memory) {
+    let len = cell.layout.len();
+    let largest = net::largest(level, &memory.nets[cell.offset..], cell.layout);
     memory.nets.resize(cell.offset + 2 * len, 0.0);
     let (low, high) = memory.nets[cell.offset..].split_at_mut(len);
-    let down = cell.n == 0 || (cell.m > 0 && net::bends_more_down(low, cell.m, cell.n));
+    let in_s = net::bends_more_in_s(low, cell.layout);
+    net::halve(low, high, cell.layout, in_s);
     let (mut first, mut second) = (cell, cell);
-    let degree = if down {
-        net::halve_down(low, high, cell.m, width);
+    let degree = if in_s {
         let middle = 0.5 * (cell.domain.s.0 + cell.domain.s.1);
         (first.domain.s.1, second.domain.s.0) = (middle, middle);
-        cell.m
+        cell.layout.m
     } else {
-        net::halve_along(low, high, cell.n);
         let middle = 0.5 * (cell.domain.t.0 + cell.domain.t.1);
         (first.domain.t.1, second.domain.t.0) = (middle, middle);
-        cell.n
+        cell.layout.n
     };
     // halving is exact, one rounding a level; averages do not amplify
     let grown = cell.rounding + degree as f64 * ROUNDING * largest;
     (first.rounding, second.rounding) = (grown, grown);
-    if net::least(low) <= net::least(high) {
+    if net::least(level, low, cell.layout) <= net::least(level, high, cell.layout) {
         low.swap_with_slice(high);
         (first, second) = (second, first);
     }

@@ -1,20 +1,22 @@
 //! When a form is convex on a box, and how strongly: a diagonal lower bound of its Hessian.
 
-use super::net;
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f64x4};
+
+use super::net::{self, Differences, LANES, Layout};
 
 /// `H >= diag(s, t)` on a box, both positive: the form's second derivatives in the leaf's parameters.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, PartialEq)]
 pub(super) struct Curvature {
     pub s: f64,
     pub t: f64,
 }
 
-/// A box's net with its degrees, the box's extents, and the bound of the coefficients' rounding.
+/// A box's net, the box's extents, and the bound of the coefficients' rounding.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patch<'a> {
     pub g: &'a [f64],
-    pub m: usize,
-    pub n: usize,
+    pub layout: Layout,
     pub extent: (f64, f64),
     pub rounding: f64,
 }
@@ -28,38 +30,37 @@ pub(super) const CORRELATED: f64 = 0.98;
 /// A proven lower bound of the Hessian on the box, if the form is found convex there.
 ///
 /// `scratch` is working memory.
-pub(super) fn curvature(patch: Patch<'_>, scratch: &mut Vec<[f64; 3]>) -> Option<Curvature> {
-    match (patch.m, patch.n) {
-        (0, _) => along_t(patch),
-        (_, 0) => along_s(patch),
-        _ => by_intervals(patch).or_else(|| by_matrices(patch, scratch)),
-    }
+pub(super) fn curvature(level: Level, patch: Patch<'_>, scratch: &mut Vec<f64>) -> Option<Curvature> {
+    dispatch!(level, simd => {
+        let differences = net::differences(simd, patch.g, patch.layout);
+        match patch.layout {
+            Layout { m: 0, .. } => in_one(patch, differences).map(|t| Curvature { s: 0.0, t: t / patch.extent.1.powi(2) }),
+            Layout { n: 0, .. } => in_one(patch, differences).map(|s| Curvature { s: s / patch.extent.0.powi(2), t: 0.0 }),
+            _ => by_intervals(patch, differences).or_else(|| by_matrices(simd, patch, scratch)),
+        }
+    })
 }
 
-fn along_s(Patch { g, m, n, extent, rounding }: Patch<'_>) -> Option<Curvature> {
-    if m < 2 {
-        return None;
-    }
-    let least = net::least_second_down(g, n + 1) - 4.0 * rounding;
-    (least > 0.0).then(|| Curvature { s: least * (m * (m - 1)) as f64 / extent.0.powi(2), t: 0.0 })
-}
-
-fn along_t(Patch { g, n, extent, rounding, .. }: Patch<'_>) -> Option<Curvature> {
-    if n < 2 {
-        return None;
-    }
-    let least = net::least_second_along(g, n + 1) - 4.0 * rounding;
-    (least > 0.0).then(|| Curvature { s: 0.0, t: least * (n * (n - 1)) as f64 / extent.1.powi(2) })
+/// The least second derivative of a net in one variable over its own parameter, if that is positive.
+fn in_one(patch: Patch<'_>, differences: Differences) -> Option<f64> {
+    let degree = patch.layout.along();
+    let least = differences.along - 4.0 * patch.rounding;
+    (degree >= 2 && least > 0.0).then(|| least * (degree * (degree - 1)) as f64)
 }
 
 /// Second derivatives as intervals: with `rho² = max Gst² / (min Gss min Gtt) < 1`, `H >= (1 - rho) diag(min Gss, min Gtt)`.
 ///
 /// A second difference of coefficients errs by 4 of their bounds.
-fn by_intervals(patch: Patch<'_>) -> Option<Curvature> {
-    let Patch { g, m, n, extent, rounding } = patch;
-    let s = along_s(patch)?.s;
-    let t = along_t(patch)?.t;
-    let mixed = (net::largest_mixed(g, n + 1) + 4.0 * rounding) * (m * n) as f64 / (extent.0 * extent.1);
+fn by_intervals(patch: Patch<'_>, differences: Differences) -> Option<Curvature> {
+    let Patch { layout: Layout { m, n }, extent, rounding, .. } = patch;
+    let (down, along) = (differences.down - 4.0 * rounding, differences.along - 4.0 * rounding);
+    // not `<=`: a NaN must fail too
+    if !(down > 0.0 && along > 0.0) {
+        return None;
+    }
+    let s = down * (m * (m - 1)) as f64 / extent.0.powi(2);
+    let t = along * (n * (n - 1)) as f64 / extent.1.powi(2);
+    let mixed = (differences.mixed + 4.0 * rounding) * (m * n) as f64 / (extent.0 * extent.1);
     let rho = mixed / (s * t).sqrt();
     (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
 }
@@ -70,78 +71,95 @@ fn by_intervals(patch: Patch<'_>) -> Option<Curvature> {
 ///
 /// ```text
 /// A[i,j] = (m-i)(m-i-1) Dss[i,j] + 2 i (m-i) Dss[i-1,j] + i (i-1) Dss[i-2,j]          and C likewise in t
-/// B[i,j] = (m-i)(n-j) Dst[i,j] + i (n-j) Dst[i-1,j] + (m-i) j Dst[i,j-1] + i j Dst[i-1,j-1]
+/// B[i,j] = (m-i) (F[i,j] - F[i+1,j]) + i (F[i-1,j] - F[i,j]),     F[i,j] = (n-j) Dt[i,j] + j Dt[i,j-1]
 /// ```
 ///
 /// with the differences `D` of the form's net, and `D` = 0 outside. The Hessian is a convex combination of the matrices
 /// `[[A, B], [B, C]]`, hence positive definite if all of them are, `A` and `C` lowered and `|B|` raised by their rounding.
 /// With `A` and `C` scaled by their means the least eigenvalue of a matrix is at least `(a c - b²) / (a + c)`; the least of these,
 /// times the means, is the bound.
-fn by_matrices(patch: Patch<'_>, scratch: &mut Vec<[f64; 3]>) -> Option<Curvature> {
-    let Patch { g, m, n, extent, rounding } = patch;
-    if m < 2 || n < 2 {
-        return None;
-    }
-    let width = n + 1;
-    let second = |at: usize, step: usize| g[at] - 2.0 * g[at + step] + g[at + 2 * step];
-    let mixed = |at: usize| g[at] - g[at + width] - g[at + 1] + g[at + width + 1];
+#[inline(always)]
+fn by_matrices<S: Simd>(simd: S, patch: Patch<'_>, scratch: &mut Vec<f64>) -> Option<Curvature> {
+    let Patch { g, layout, extent, rounding } = patch;
+    let Layout { m, n } = layout;
+    let stride = layout.stride();
     let error = |factor: usize| 4.0 * rounding * factor as f64;
     let (error_a, error_b, error_c) = (error(m * (m - 1)), error(m * n), error(n * (n - 1)));
-    // the raised second derivative at index `i` of degree `degree`, from the differences at `at - k * step`
-    let raised = |i: usize, degree: usize, at: usize, step: usize| {
-        let (here, left) = (i as f64, (degree - i) as f64);
-        let mut sum = 0.0;
-        if i + 2 <= degree {
-            sum += left * (left - 1.0) * second(at, step);
-        }
-        if i >= 1 && i < degree {
-            sum += 2.0 * here * left * second(at - step, step);
-        }
-        if i >= 2 {
-            sum += here * (here - 1.0) * second(at - 2 * step, step);
-        }
-        sum
-    };
+    let zero = f64x4::splat(simd, 0.0);
+    // rows of the three nets side by side; each is kept for the second pass
+    let size = (m + 1) * stride;
     scratch.clear();
-    let (mut mean_a, mut mean_c) = (0.0, 0.0);
-    for i in 0..=m {
-        let (fi, mi) = (i as f64, (m - i) as f64);
-        for j in 0..=n {
-            let (fj, nj) = (j as f64, (n - j) as f64);
-            let at = i * width + j;
-            let a = raised(i, m, at, width) - error_a;
-            let c = raised(j, n, at, 1) - error_c;
-            let mut b = 0.0;
-            if i < m && j < n {
-                b += mi * nj * mixed(at);
+    scratch.resize(3 * size, 0.0);
+    let load = |at: usize| f64x4::from_slice(simd, &g[at..at + LANES]);
+    let (mut sum_a, mut sum_c) = (zero, zero);
+    for column in (0..stride).step_by(LANES) {
+        let j = f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]) + column as f64;
+        let inside = j.simd_le(n as f64);
+        let left = (zero + n as f64) - j;
+        // the weights of the differences at j, j - 1 and j - 2; 0 where one lies outside, also in the lanes beyond the row
+        let within = |weight: f64x4<S>, from: f64, to: f64| {
+            (j.simd_ge(from) & j.simd_le(to)).select(weight, zero)
+        };
+        let (last, here) = (n as f64, left * (left - 1.0));
+        let second = [within(here, 0.0, last - 2.0), within(j * left * 2.0, 1.0, last - 1.0), within(j * (j - 1.0), 2.0, last)];
+        let first = [within(left, 0.0, last - 1.0), within(j, 1.0, last)];
+        let slope = |row: usize| {
+            let at = row * stride + column;
+            let (here, behind) = (load(at), net::before(simd, g, at, 1));
+            (here - load(at + 1)) * first[0] + (behind - here) * first[1]
+        };
+        let bend = |row: usize| load(row * stride + column) - load((row + 1) * stride + column) * 2.0 + load((row + 2) * stride + column);
+        let (mut slopes, mut bends) = ([zero, zero, slope(0)], [zero, zero, zero]);
+        for i in 0..=m {
+            let at = i * stride + column;
+            let (fi, mi) = (i as f64, (m - i) as f64);
+            bends = [bends[1], bends[2], if i + 2 <= m { bend(i) } else { zero }];
+            slopes = [slopes[1], slopes[2], if i < m { slope(i + 1) } else { zero }];
+            let mut a = bends[2] * (mi * (mi - 1.0));
+            if i > 0 {
+                a += bends[1] * (2.0 * fi * mi);
             }
-            if i > 0 && j < n {
-                b += fi * nj * mixed(at - width);
+            if i > 1 {
+                a += bends[0] * (fi * (fi - 1.0));
             }
-            if i < m && j > 0 {
-                b += mi * fj * mixed(at - 1);
+            let mut b = zero;
+            if i < m {
+                b += (slopes[1] - slopes[2]) * mi;
             }
-            if i > 0 && j > 0 {
-                b += fi * fj * mixed(at - width - 1);
+            if i > 0 {
+                b += (slopes[0] - slopes[1]) * fi;
             }
-            let b = b.abs() + error_b;
+            let (x, y, z) = (load(at), load(at + 1), load(at + 2));
+            let (w, v) = (net::before(simd, g, at, 1), net::before(simd, g, at, 2));
+            let c = (x - y * 2.0 + z) * second[0] + (w - x * 2.0 + y) * second[1] + (v - w * 2.0 + x) * second[2];
+            let (a, b, c) = (a - error_a, b.abs() + error_b, c - error_c);
             // not `<=`: a NaN must fail too
-            if !(a > 0.0 && c > 0.0 && a * c > b * b) {
+            let definite = a.simd_gt(0.0) & c.simd_gt(0.0) & (a * c).simd_gt(b * b);
+            if !(definite | !inside).all_true() {
                 return None;
             }
-            scratch.push([a, b, c]);
-            mean_a += a;
-            mean_c += c;
+            sum_a += inside.select(a, zero);
+            sum_c += inside.select(c, zero);
+            a.store_slice(&mut scratch[at..at + LANES]);
+            b.store_slice(&mut scratch[size + at..size + at + LANES]);
+            c.store_slice(&mut scratch[2 * size + at..2 * size + at + LANES]);
         }
     }
-    let count = scratch.len() as f64;
-    let (mean_a, mean_c) = (mean_a / count, mean_c / count);
+    let count = ((m + 1) * (n + 1)) as f64;
+    let mean = |sum: f64x4<S>| ((sum[0] + sum[1]) + (sum[2] + sum[3])) / count;
+    let (mean_a, mean_c) = (mean(sum_a), mean(sum_c));
     let (scale_a, scale_c) = (mean_a.recip(), mean_c.recip());
-    let eigenvalue = |[a, b, c]: &[f64; 3]| {
-        let (a, c) = (a * scale_a, c * scale_c);
-        (a * c - b * b * scale_a * scale_c) / (a + c)
-    };
-    let theta = scratch.iter().map(eigenvalue).fold(f64::INFINITY, f64::min);
+    let mut theta = zero + f64::INFINITY;
+    for column in (0..stride).step_by(LANES) {
+        let inside = (f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]) + column as f64).simd_le(n as f64);
+        for at in (column..size).step_by(stride) {
+            let load = |from: usize| f64x4::from_slice(simd, &scratch[from + at..from + at + LANES]);
+            let (a, b, c) = (load(0) * scale_a, load(size), load(2 * size) * scale_c);
+            let eigenvalue = (a * c - b * b * (scale_a * scale_c)) / (a + c);
+            theta = theta.min(inside.select(eigenvalue, zero + f64::INFINITY));
+        }
+    }
+    let theta = theta[0].min(theta[1]).min(theta[2].min(theta[3]));
     (theta >= WORTHWHILE)
         .then(|| Curvature { s: theta * mean_a / extent.0.powi(2), t: theta * mean_c / extent.1.powi(2) })
 }
@@ -165,6 +183,7 @@ pub(super) fn descent(slope: f64, error: f64, curvature: f64, from: f64, to: f64
 
 #[cfg(test)]
 mod tests {
+    use super::super::net::tests::{laid_out, levels};
     use super::*;
     use perpend_kernel::binomial;
 
@@ -174,7 +193,21 @@ mod tests {
             if i < power { 0.0 } else { binomial(i, power) / binomial(degree, power) }
         };
         let at = |i: usize, j: usize| a.iter().map(|(k, l, c)| c * part(m, *k, i) * part(n, *l, j)).sum::<f64>();
-        (0..=m).flat_map(|i| (0..=n).map(move |j| (i, j))).map(|(i, j)| at(i, j)).collect()
+        let plain: Vec<f64> = (0..=m).flat_map(|i| (0..=n).map(move |j| (i, j))).map(|(i, j)| at(i, j)).collect();
+        laid_out(Layout { m, n }, &plain)
+    }
+
+    /// What both tests find, at every level the same.
+    fn both(patch: Patch<'_>) -> [Option<Curvature>; 2] {
+        let found = levels().into_iter().map(|level| {
+            dispatch!(level, simd => [
+                by_intervals(patch, net::differences(simd, patch.g, patch.layout)),
+                by_matrices(simd, patch, &mut Vec::new()),
+            ])
+        });
+        let found: Vec<_> = found.collect();
+        assert!(found.iter().all(|other| *other == found[0]), "the same bits at every level");
+        found[0]
     }
 
     #[test]
@@ -182,8 +215,9 @@ mod tests {
         let extent = (1.0, 1.0);
         // 3 s² + 2 s t + t²: Hessian [[6, 2], [2, 2]]
         let g = bernstein(4, 4, &[(2, 0, 3.0), (1, 1, 2.0), (0, 2, 1.0)]);
-        let patch = Patch { g: &g, m: 4, n: 4, extent, rounding: 0.0 };
-        for found in [by_intervals(patch), by_matrices(patch, &mut Vec::new())] {
+        let layout = Layout { m: 4, n: 4 };
+        let patch = Patch { g: &g, layout, extent, rounding: 0.0 };
+        for found in both(patch) {
             let Curvature { s, t } = found.expect("convex");
             assert!((6.0 - s) * (2.0 - t) >= 4.0 - 1e-12 && s < 6.0 && t < 2.0, "H - diag({s}, {t}) is not negative");
             assert!(s > 0.5 && t > 0.2, "the bound is not idle: {s} {t}");
@@ -191,8 +225,8 @@ mod tests {
         // a saddle, and a valley whose Hessian is singular
         for form in [[(2, 0, 1.0), (0, 2, -1.0), (1, 1, 0.0)], [(2, 0, 1.0), (1, 1, 2.0), (0, 2, 1.0)]] {
             let g = bernstein(4, 4, &form);
-            let patch = Patch { g: &g, m: 4, n: 4, extent, rounding: 1e-15 };
-            assert!(curvature(patch, &mut Vec::new()).is_none());
+            let patch = Patch { g: &g, layout, extent, rounding: 1e-15 };
+            assert!(curvature(Level::new(), patch, &mut Vec::new()).is_none());
         }
     }
 
@@ -200,8 +234,8 @@ mod tests {
     fn a_varying_hessian_is_bounded_everywhere() {
         // s⁴ + s² + 3 t² + s t² (Hessian [[12 s² + 2, 2 t], [2 t, 6 + 2 s]]), on a shrunken box
         let g = bernstein(4, 4, &[(4, 0, 1.0), (2, 0, 1.0), (0, 2, 3.0), (1, 2, 1.0)]);
-        let patch = Patch { g: &g, m: 4, n: 4, extent: (1.0, 1.0), rounding: 0.0 };
-        let Curvature { s: a, t: c } = curvature(patch, &mut Vec::new()).expect("convex");
+        let patch = Patch { g: &g, layout: Layout { m: 4, n: 4 }, extent: (1.0, 1.0), rounding: 0.0 };
+        let Curvature { s: a, t: c } = curvature(Level::new(), patch, &mut Vec::new()).expect("convex");
         for i in 0..=20 {
             for j in 0..=20 {
                 let (s, t) = (f64::from(i) / 20.0, f64::from(j) / 20.0);

@@ -31,10 +31,13 @@
 //!
 //! where `N + 17` was used up: what is left over pays for the rounding of the differences that the tests form of `g`.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f64x4};
 use glam::{DVec3, DVec4};
 use perpend_kernel::binomial;
 
 use super::ROUNDING;
+use super::net::{LANES, Layout};
 
 /// What the form needs to know of a leaf.
 #[derive(Debug, Clone, Copy)]
@@ -45,15 +48,9 @@ pub(super) struct Shape<'a> {
 }
 
 impl Shape<'_> {
-    /// Degrees of the form in s and t.
-    pub(super) fn form_degree(&self) -> (usize, usize) {
-        (2 * self.degree.0, 2 * self.degree.1)
-    }
-
-    /// Coefficients of the form.
-    pub(super) fn form_len(&self) -> usize {
-        let (m, n) = self.form_degree();
-        (m + 1) * (n + 1)
+    /// The net of the form: twice the leaf's degrees.
+    pub(super) fn layout(&self) -> Layout {
+        Layout { m: 2 * self.degree.0, n: 2 * self.degree.1 }
     }
 }
 
@@ -68,48 +65,62 @@ pub(super) fn rounding_bound(degree: (usize, usize), x: f64, r: f64, tau: f64, h
     rounding_factor(degree) * ROUNDING * ((x + r).powi(2) + tau * tau) * heaviest * heaviest
 }
 
-/// Appends the coefficients of the form at `x` to `out`. `tau` enters that of a rational leaf only.
-pub(super) fn form(leaf: Shape<'_>, tables: &[f64], x: DVec3, tau: f64, out: &mut Vec<f64>) {
-    let len = leaf.form_len();
+/// Appends the form's net at `x` to `out`. `tau` enters that of a rational leaf only.
+pub(super) fn form(level: Level, leaf: Shape<'_>, tables: &[f64], x: DVec3, tau: f64, out: &mut Vec<f64>) {
+    let len = leaf.layout().len();
+    let from = out.len();
+    out.resize(from + len, 0.0);
+    let (g, kappa) = (&mut out[from..], x.length_squared() - tau * tau);
+    dispatch!(level, simd => if leaf.rational {
+        combine::<_, true>(simd, tables, x, kappa, g);
+    } else {
+        combine::<_, false>(simd, tables, x, x.length_squared(), g);
+    });
+}
+
+#[inline(always)]
+fn combine<S: Simd, const RATIONAL: bool>(simd: S, tables: &[f64], x: DVec3, last: f64, g: &mut [f64]) {
+    let len = g.len();
     let table = |k: usize| &tables[k * len..(k + 1) * len];
     let (c0, cx, cy, cz) = (table(0), table(1), table(2), table(3));
-    let (x, xx) = (-2.0 * x, x.length_squared());
-    let linear = c0.iter().zip(cx).zip(cy).zip(cz).map(|(((c0, a), b), c)| c0 + x.x * a + x.y * b + x.z * c);
-    if leaf.rational {
-        let kappa = xx - tau * tau;
-        out.extend(linear.zip(table(4)).map(|(g, c2)| g + kappa * c2));
-    } else {
-        out.extend(linear.map(|g| g + xx));
+    let c2 = if RATIONAL { table(4) } else { c0 };
+    let x = -2.0 * x;
+    for at in (0..len).step_by(LANES) {
+        let lanes = at..at + LANES;
+        let load = |table: &[f64]| f64x4::from_slice(simd, &table[lanes.clone()]);
+        let linear = load(c0) + load(cx) * x.x + load(cy) * x.y + load(cz) * x.z;
+        let sum = if RATIONAL { linear + load(c2) * last } else { linear + last };
+        sum.store_slice(&mut g[lanes]);
     }
 }
 
-/// The tables: `c0`, the coordinates of `c1`, and `c2` where the leaf is rational.
+/// The tables, each laid out as the form's net: `c0`, the coordinates of `c1`, and `c2` where the leaf is rational.
 ///
 /// Points are scaled by their binomials once, products are summed over unordered pairs, and the sums are divided once.
 pub(super) fn tables(leaf: Shape<'_>) -> Box<[f64]> {
-    let ((p, q), (m, n)) = (leaf.degree, leaf.form_degree());
-    let (width, len) = (n + 1, leaf.form_len());
+    let ((p, q), layout) = (leaf.degree, leaf.layout());
+    let len = layout.len();
     let scaled: Vec<DVec4> =
         leaf.net.iter().enumerate().map(|(e, a)| *a * (binomial(p, e / (q + 1)) * binomial(q, e % (q + 1)))).collect();
-    let mut tables = vec![0.0; len * if leaf.rational { 5 } else { 4 }];
+    let mut sums = vec![[0.0; 5]; (layout.m + 1) * (layout.n + 1)];
     for (e, a) in scaled.iter().enumerate() {
         for (f, b) in scaled.iter().enumerate().skip(e) {
-            let at = (e / (q + 1) + f / (q + 1)) * width + e % (q + 1) + f % (q + 1);
+            let at = (e / (q + 1) + f / (q + 1)) * (layout.n + 1) + e % (q + 1) + f % (q + 1);
             let (twice, once) = if e == f { (1.0, 0.5) } else { (2.0, 1.0) };
-            tables[at] += twice * a.truncate().dot(b.truncate());
             let c1 = once * (a.truncate() * b.w + b.truncate() * a.w);
-            tables[len + at] += c1.x;
-            tables[2 * len + at] += c1.y;
-            tables[3 * len + at] += c1.z;
-            if leaf.rational {
-                tables[4 * len + at] += twice * a.w * b.w;
-            }
+            let products = [twice * a.truncate().dot(b.truncate()), c1.x, c1.y, c1.z, twice * a.w * b.w];
+            sums[at].iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
         }
     }
-    for at in 0..len {
-        let binomials = binomial(m, at / width) * binomial(n, at % width);
-        tables.iter_mut().skip(at).step_by(len).for_each(|c| *c /= binomials);
+    let mut tables = vec![0.0; len * if leaf.rational { 5 } else { 4 }];
+    for (at, sum) in sums.iter().enumerate() {
+        let (i, j) = (at / (layout.n + 1), at % (layout.n + 1));
+        let binomials = binomial(layout.m, i) * binomial(layout.n, j);
+        for (table, sum) in tables.chunks_exact_mut(len).zip(sum) {
+            table[layout.at(i, j)] = sum / binomials;
+        }
     }
+    tables.chunks_exact_mut(len).for_each(|table| layout.pad(table));
     tables.into()
 }
 
@@ -121,13 +132,13 @@ mod tests {
 
     /// The form's coefficients in double-double, by the plain double sum.
     fn exact(leaf: Shape<'_>, x: DVec3, tau: f64) -> Vec<DoubleDouble> {
-        let ((p, q), (m, n)) = (leaf.degree, leaf.form_degree());
+        let ((p, q), Layout { m, n }) = (leaf.degree, leaf.layout());
         let number = DoubleDouble::from;
         let mut kappa = x.to_array().iter().fold(number(0.0), |sum, x| sum + number(*x) * number(*x));
         if leaf.rational {
             kappa = kappa - number(tau) * number(tau);
         }
-        let mut sums = vec![number(0.0); leaf.form_len()];
+        let mut sums = vec![number(0.0); (m + 1) * (n + 1)];
         for (e, a) in leaf.net.iter().enumerate() {
             for (f, b) in leaf.net.iter().enumerate() {
                 let (i, j, k, l) = (e / (q + 1), e % (q + 1), f / (q + 1), f % (q + 1));
@@ -165,26 +176,33 @@ mod tests {
             let x = random.point() * r * 10.0_f64.powf(random.between(-3.0, 3.0));
             let tau = (x.length() + r) * random.between(0.0, 1.0);
             let leaf = Shape { degree: (p, q), rational, net: &net };
+            let (layout, level) = (leaf.layout(), Level::new());
             let mut found = Vec::new();
-            Tables::default().form(leaf, x, tau, &mut found);
+            form(level, leaf, &tables(leaf), x, tau, &mut found);
+            let mut plainest = Vec::new();
+            form(Level::baseline(), leaf, &tables(leaf), x, tau, &mut plainest);
+            assert_eq!(found, plainest, "the same bits at every level");
             let mut expected = exact(leaf, x, tau);
             let mut bound = rounding_bound(leaf.degree, x.length(), r, tau, heaviest);
             let error = |found: &[f64], expected: &[DoubleDouble], bound: f64| {
-                let errors =
-                    found.iter().zip(expected).map(|(f, e)| (DoubleDouble::from(*f) - *e).to_f64().abs() / bound);
+                let width = layout.n + 1;
+                let errors = expected.iter().enumerate().map(|(at, exact)| {
+                    let found = found[layout.at(at / width, at % width)];
+                    (DoubleDouble::from(found) - *exact).to_f64().abs() / bound
+                });
                 errors.fold(0.0, f64::max)
             };
             worst = worst.max(error(&found, &expected, bound));
-            let (m, n) = leaf.form_degree();
+            let Layout { m, n } = layout;
             for _ in 0..8 {
-                let (_, largest) = net::extremes(&found);
+                let largest = net::largest(level, &found, layout);
                 let (mut high, mut exact_high) = (found.clone(), expected.clone());
                 if n == 0 || random.next().is_multiple_of(2) {
-                    net::halve_down(&mut found, &mut high, m, n + 1);
+                    net::halve(&mut found, &mut high, layout, true);
                     halve(&mut expected, &mut exact_high, (0..=n).map(|j| (j, n + 1)), m);
                     bound += m as f64 * ROUNDING * largest;
                 } else {
-                    net::halve_along(&mut found, &mut high, n);
+                    net::halve(&mut found, &mut high, layout, false);
                     halve(&mut expected, &mut exact_high, (0..=m).map(|i| (i * (n + 1), 1)), n);
                     bound += n as f64 * ROUNDING * largest;
                 }

@@ -1,68 +1,199 @@
 //! Signs and differences of a scalar Bernstein net, and its halves.
 //!
-//! A net of degree `(m, n)` has `(m + 1)(n + 1)` coefficients in row order; a polynomial in one variable is a net with `m = 0` or
-//! `n = 0`. Extremes are taken in eight lanes: `f64::min` would keep the loops from being vectorised.
+//! A net of degree `(m, n)` has `m + 1` rows of `n + 1` coefficients. Rows lie [`stride`](Layout::stride) apart, a multiple of the lanes, and are filled
+//! up with their last coefficient: extremes and differences of whole rows may then be taken lane by lane, the same at every level of the processor. A
+//! polynomial in one variable is one row, whichever variable it is. A few numbers follow the last row, so that a row may be read from a little behind
+//! its start.
 
-const LANES: usize = 8;
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f64x4};
 
-fn smaller(a: f64, b: f64) -> f64 {
-    if b < a { b } else { a }
+/// Lanes of a vector.
+pub(super) const LANES: usize = 4;
+
+/// Degrees of a net in s and t; of a net in one variable the other one is 0.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) struct Layout {
+    pub m: usize,
+    pub n: usize,
 }
 
-fn larger(a: f64, b: f64) -> f64 {
-    if b > a { b } else { a }
-}
+impl Layout {
+    /// The degree from row to row: 0 for a net in one variable.
+    pub(super) fn down(self) -> usize {
+        if self.n == 0 { 0 } else { self.m }
+    }
 
-/// The least coefficient and the largest |coefficient|.
-pub(super) fn extremes(g: &[f64]) -> (f64, f64) {
-    let (mut low, mut high) = ([f64::INFINITY; LANES], [0.0; LANES]);
-    let chunks = g.chunks_exact(LANES);
-    let rest = chunks.remainder();
-    for chunk in chunks {
-        for k in 0..LANES {
-            low[k] = smaller(low[k], chunk[k]);
-            high[k] = larger(high[k], chunk[k].abs());
+    /// The degree along the rows.
+    pub(super) fn along(self) -> usize {
+        if self.n == 0 { self.m } else { self.n }
+    }
+
+    /// How far rows are apart: at least one lane is left over, as the degree of a square is even.
+    pub(super) fn stride(self) -> usize {
+        (self.along() + 1).next_multiple_of(LANES)
+    }
+
+    /// The numbers that the rows take up.
+    pub(super) fn rows_len(self) -> usize {
+        (self.down() + 1) * self.stride()
+    }
+
+    /// All numbers of a net.
+    pub(super) fn len(self) -> usize {
+        self.rows_len() + LANES
+    }
+
+    /// Where the coefficient of row `i` and column `j` lies; of a net in one variable, that of index `i + j`.
+    pub(super) fn at(self, i: usize, j: usize) -> usize {
+        if self.n == 0 || self.m == 0 { i + j } else { i * self.stride() + j }
+    }
+
+    /// The four corners: where each lies, and whether it is at the end in s and in t. One for each that differs.
+    pub(super) fn corners(self) -> impl Iterator<Item = (usize, bool, bool)> {
+        let ends = [(false, false), (false, true), (true, false), (true, true)];
+        ends.into_iter()
+            .filter(move |(s, t)| (self.m > 0 || !s) && (self.n > 0 || !t))
+            .map(move |(s, t)| (self.at(if s { self.m } else { 0 }, if t { self.n } else { 0 }), s, t))
+    }
+
+    /// Fills every row up with its last coefficient.
+    pub(super) fn pad(self, g: &mut [f64]) {
+        let along = self.along();
+        for row in g[..self.rows_len()].chunks_exact_mut(self.stride()) {
+            let last = row[along];
+            row[along + 1..].fill(last);
         }
     }
-    for (k, x) in rest.iter().enumerate() {
-        low[k] = smaller(low[k], *x);
-        high[k] = larger(high[k], x.abs());
+}
+
+#[inline(always)]
+fn load<S: Simd>(simd: S, g: &[f64], at: usize) -> f64x4<S> {
+    f64x4::from_slice(simd, &g[at..at + LANES])
+}
+
+/// The lanes that begin `by` before `at`, zeros where that is before the net.
+#[inline(always)]
+pub(super) fn before<S: Simd>(simd: S, g: &[f64], at: usize, by: usize) -> f64x4<S> {
+    if at >= by {
+        return load(simd, g, at - by);
     }
-    (low.into_iter().fold(f64::INFINITY, smaller), high.into_iter().fold(0.0, larger))
+    let mut lanes = [0.0; LANES];
+    lanes[by..].copy_from_slice(&g[..LANES - by]);
+    f64x4::simd_from(simd, lanes)
+}
+
+#[inline(always)]
+fn least_lane<S: Simd>(x: f64x4<S>) -> f64 {
+    let smaller = |a: f64, b: f64| if b < a { b } else { a };
+    smaller(smaller(x[0], x[1]), smaller(x[2], x[3]))
+}
+
+/// The indices of the lanes that begin at `from`.
+#[inline(always)]
+fn indices<S: Simd>(simd: S, from: usize) -> f64x4<S> {
+    f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]) + from as f64
+}
+
+/// The least of `f` over all chunks of `0..len`.
+#[inline(always)]
+fn least_of<S: Simd>(simd: S, len: usize, f: impl Fn(usize) -> f64x4<S>) -> f64 {
+    let mut low = f64x4::splat(simd, f64::INFINITY);
+    let mut at = 0;
+    while at < len {
+        low = low.min(f(at));
+        at += LANES;
+    }
+    least_lane(low)
 }
 
 /// The least coefficient.
-pub(super) fn least(g: &[f64]) -> f64 {
-    g.iter().copied().fold(f64::INFINITY, smaller)
+pub(super) fn least(level: Level, g: &[f64], layout: Layout) -> f64 {
+    dispatch!(level, simd => least_of(simd, layout.rows_len(), |at| load(simd, g, at)))
 }
 
 /// The largest coefficient.
-pub(super) fn most(g: &[f64]) -> f64 {
-    g.iter().copied().fold(f64::NEG_INFINITY, larger)
+pub(super) fn most(level: Level, g: &[f64], layout: Layout) -> f64 {
+    -dispatch!(level, simd => least_of(simd, layout.rows_len(), |at| -load(simd, g, at)))
 }
 
-/// The least of `a[i] - b[i]`.
-fn least_difference(a: &[f64], b: &[f64]) -> f64 {
-    a.iter().zip(b).map(|(a, b)| a - b).fold(f64::INFINITY, smaller)
+/// The largest |coefficient|.
+pub(super) fn largest(level: Level, g: &[f64], layout: Layout) -> f64 {
+    -dispatch!(level, simd => least_of(simd, layout.rows_len(), |at| -load(simd, g, at).abs()))
 }
 
-/// How far every row of the net stays above row `at`: the least difference, negative where one falls below.
-pub(super) fn rows_above(g: &[f64], width: usize, at: usize) -> f64 {
-    let edge = &g[at * width..(at + 1) * width];
-    let rows = g.chunks_exact(width).enumerate().filter(|(i, _)| *i != at);
-    rows.map(|(_, row)| least_difference(row, edge)).fold(f64::INFINITY, smaller)
+/// An edge of a net in two variables.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub(super) enum Edge {
+    /// The first or the last row.
+    Row { last: bool },
+    /// The first or the last column.
+    Column { last: bool },
 }
 
-/// How far every column of the net stays above column `at`. May stop early, with some value below `enough`, once it falls
-/// below that.
-pub(super) fn columns_above(g: &[f64], width: usize, at: usize, enough: f64) -> f64 {
-    let mut low = f64::INFINITY;
-    for row in g.chunks_exact(width) {
-        for (j, x) in row.iter().enumerate() {
-            if j != at {
-                low = smaller(low, x - row[at]);
+/// Every edge of a net.
+pub(super) const EDGES: [Edge; 4] =
+    [Edge::Row { last: false }, Edge::Row { last: true }, Edge::Column { last: false }, Edge::Column { last: true }];
+
+/// An edge that holds a coefficient of at most `holds`, and above which everything else stays but for `given` at most; with how far it stays above:
+/// negative where it falls below.
+pub(super) fn edge_below(level: Level, g: &[f64], layout: Layout, holds: f64, given: f64) -> Option<(Edge, f64)> {
+    dispatch!(level, simd => EDGES.into_iter().find_map(|edge| {
+        let above = match edge {
+            Edge::Row { last } => {
+                let start = if last { layout.rows_len() - layout.stride() } else { 0 };
+                let held = least_of(simd, layout.stride(), |at| load(simd, g, start + at)) <= holds;
+                held.then(|| rows_above(simd, g, layout, last))
             }
+            Edge::Column { last } => {
+                let at = if last { layout.n } else { 0 };
+                let held = (0..=layout.m).any(|i| g[layout.at(i, at)] <= holds);
+                held.then(|| columns_above(simd, g, layout, last, -given))
+            }
+        };
+        above.filter(|above| *above >= -given).map(|above| (edge, above))
+    }))
+}
+
+/// How far everything else stays above an edge: the least difference, negative where it falls below.
+pub(super) fn above(level: Level, g: &[f64], layout: Layout, edge: Edge) -> f64 {
+    dispatch!(level, simd => match edge {
+        Edge::Row { last } => rows_above(simd, g, layout, last),
+        Edge::Column { last } => columns_above(simd, g, layout, last, f64::NEG_INFINITY),
+    })
+}
+
+#[inline(always)]
+fn rows_above<S: Simd>(simd: S, g: &[f64], layout: Layout, last: bool) -> f64 {
+    let stride = layout.stride();
+    let (edge, from) = if last { (layout.rows_len() - stride, 0) } else { (0, stride) };
+    let mut low = f64x4::splat(simd, f64::INFINITY);
+    let mut column = 0;
+    while column < stride {
+        let held = load(simd, g, edge + column);
+        for row in 0..layout.m {
+            low = low.min(load(simd, g, from + row * stride + column) - held);
         }
+        column += LANES;
+    }
+    least_lane(low)
+}
+
+/// May stop early, with some value below `enough`, once it falls below that.
+#[inline(always)]
+fn columns_above<S: Simd>(simd: S, g: &[f64], layout: Layout, last: bool, enough: f64) -> f64 {
+    let (stride, edge) = (layout.stride(), if last { layout.n } else { 0 });
+    let infinity = f64x4::splat(simd, f64::INFINITY);
+    let mut low = f64::INFINITY;
+    for row in g[..layout.rows_len()].chunks_exact(stride) {
+        let held = row[edge];
+        let least = least_of(simd, stride, |at| {
+            let index = indices(simd, at);
+            // the edge itself, and what fills up the row, is no other column
+            let other = if last { index.simd_lt(edge as f64) } else { index.simd_gt(0.0) };
+            other.select(load(simd, row, at) - held, infinity)
+        });
+        low = if least < low { least } else { low };
         if low < enough {
             break;
         }
@@ -70,121 +201,208 @@ pub(super) fn columns_above(g: &[f64], width: usize, at: usize, enough: f64) -> 
     low
 }
 
-/// The least second difference down the columns: `g[i] - 2 g[i + 1] + g[i + 2]`.
-pub(super) fn least_second_down(g: &[f64], width: usize) -> f64 {
-    let n = g.len() - 2 * width;
-    let (a, b, c) = (&g[..n], &g[width..width + n], &g[2 * width..]);
-    let mut low = f64::INFINITY;
-    for i in 0..n {
-        low = smaller(low, a[i] - 2.0 * b[i] + c[i]);
-    }
-    low
+/// The edge as a net in one variable, in place of the net.
+pub(super) fn take_edge(g: &mut [f64], layout: Layout, edge: Edge) -> Layout {
+    let reduced = match edge {
+        Edge::Row { last } => {
+            if last {
+                g.copy_within(layout.rows_len() - layout.stride()..layout.rows_len(), 0);
+            }
+            Layout { m: 0, n: layout.n }
+        }
+        Edge::Column { last } => {
+            let column = if last { layout.n } else { 0 };
+            for i in 0..=layout.m {
+                g[i] = g[i * layout.stride() + column];
+            }
+            Layout { m: layout.m, n: 0 }
+        }
+    };
+    reduced.pad(g);
+    reduced
 }
 
-/// The least second difference along the rows.
-pub(super) fn least_second_along(g: &[f64], width: usize) -> f64 {
-    let mut low = f64::INFINITY;
-    for row in g.chunks_exact(width) {
-        for w in row.windows(3) {
-            low = smaller(low, w[0] - 2.0 * w[1] + w[2]);
+/// The least second differences `g[i] - 2 g[i + 1] + g[i + 2]` from row to row and along the rows, and the largest |mixed difference|
+/// `g[i][j] - g[i + 1][j] - g[i][j + 1] + g[i + 1][j + 1]`, of a net of two variables. Of one in one variable, the second is what there is.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) struct Differences {
+    pub down: f64,
+    pub along: f64,
+    pub mixed: f64,
+}
+
+#[inline(always)]
+pub(super) fn differences<S: Simd>(simd: S, g: &[f64], layout: Layout) -> Differences {
+    let (stride, rows, columns) = (layout.stride(), layout.down(), layout.along() as f64);
+    let (infinity, zero) = (f64x4::splat(simd, f64::INFINITY), f64x4::splat(simd, 0.0));
+    let (mut down, mut along, mut mixed) = (infinity, infinity, zero);
+    for column in (0..stride).step_by(LANES) {
+        let index = indices(simd, column);
+        let (first, second) = (index.simd_lt(columns), index.simd_le(columns - 2.0));
+        for i in 0..=rows {
+            let at = i * stride + column;
+            let (here, right) = (load(simd, g, at), load(simd, g, at + 1));
+            along = along.min(second.select(here - right * 2.0 + load(simd, g, at + 2), infinity));
+            if i < rows {
+                let (below, across) = (load(simd, g, at + stride), load(simd, g, at + stride + 1));
+                mixed = mixed.max(first.select((here - right) - (below - across), zero).abs());
+                if i + 1 < rows {
+                    down = down.min(here - below * 2.0 + load(simd, g, at + 2 * stride));
+                }
+            }
         }
     }
-    low
+    Differences { down: least_lane(down), along: least_lane(along), mixed: -least_lane(-mixed) }
 }
 
-/// The largest |mixed difference|: `g[i][j] - g[i + 1][j] - g[i][j + 1] + g[i + 1][j + 1]`.
-pub(super) fn largest_mixed(g: &[f64], width: usize) -> f64 {
-    let mut high = 0.0;
-    for (a, b) in g.chunks_exact(width).zip(g[width..].chunks_exact(width)) {
-        for j in 0..width - 1 {
-            high = larger(high, (a[j] - a[j + 1] - b[j] + b[j + 1]).abs());
-        }
+/// Whether the net varies more in s than in t, by second differences and degrees.
+pub(super) fn bends_more_in_s(g: &[f64], layout: Layout) -> bool {
+    let Layout { m, n } = layout;
+    if m == 0 || n == 0 {
+        return n == 0;
     }
-    high
-}
-
-/// Whether the net varies more down its columns than along its rows, by second differences and degrees.
-pub(super) fn bends_more_down(g: &[f64], m: usize, n: usize) -> bool {
-    let width = n + 1;
-    let second = |a: f64, b: f64, c: f64| (a - 2.0 * b + c).abs();
-    let mut down = 0.0;
-    for i in 0..g.len().saturating_sub(2 * width) {
-        down = larger(down, second(g[i], g[i + width], g[i + 2 * width]));
-    }
-    let mut along = 0.0;
-    for row in g.chunks_exact(width) {
-        for w in row.windows(3) {
-            along = larger(along, second(w[0], w[1], w[2]));
+    let second = |a: usize, b: usize, c: usize| (g[a] - 2.0 * g[b] + g[c]).abs();
+    let (mut down, mut along) = (0.0_f64, 0.0_f64);
+    for i in 0..=m {
+        for j in 0..=n {
+            if i + 2 <= m {
+                down = down.max(second(layout.at(i, j), layout.at(i + 1, j), layout.at(i + 2, j)));
+            }
+            if j + 2 <= n {
+                along = along.max(second(layout.at(i, j), layout.at(i, j + 1), layout.at(i, j + 2)));
+            }
         }
     }
     down * (m * m) as f64 > along * (n * n) as f64
 }
 
-/// Halves the net down its columns: `low` keeps the first half, `high` takes the second.
-pub(super) fn halve_down(low: &mut [f64], high: &mut [f64], m: usize, width: usize) {
-    high[m * width..].copy_from_slice(&low[m * width..]);
-    for k in 1..=m {
-        for i in (k..=m).rev() {
-            let (above, row) = low.split_at_mut(i * width);
-            for (x, y) in row[..width].iter_mut().zip(&above[(i - 1) * width..]) {
-                *x = 0.5 * (*x + y);
+/// Halves the net in s or in t: `low` keeps the first half, `high` takes the second.
+pub(super) fn halve(low: &mut [f64], high: &mut [f64], layout: Layout, in_s: bool) {
+    let stride = layout.stride();
+    if in_s && layout.n > 0 {
+        let m = layout.m;
+        let last = m * stride..layout.rows_len();
+        high[last.clone()].copy_from_slice(&low[last.clone()]);
+        for k in 1..=m {
+            for i in (k..=m).rev() {
+                let (above, row) = low.split_at_mut(i * stride);
+                for (x, y) in row[..stride].iter_mut().zip(&above[(i - 1) * stride..]) {
+                    *x = 0.5 * (*x + y);
+                }
             }
+            high[(m - k) * stride..(m - k + 1) * stride].copy_from_slice(&low[last.clone()]);
         }
-        high[(m - k) * width..(m - k + 1) * width].copy_from_slice(&low[m * width..]);
+        return;
     }
-}
-
-/// Halves the net along its rows.
-pub(super) fn halve_along(low: &mut [f64], high: &mut [f64], n: usize) {
-    for (low, high) in low.chunks_exact_mut(n + 1).zip(high.chunks_exact_mut(n + 1)) {
-        high[n] = low[n];
-        for k in 1..=n {
-            for j in (k..=n).rev() {
+    let degree = layout.along();
+    let rows = low[..layout.rows_len()].chunks_exact_mut(stride).zip(high.chunks_exact_mut(stride));
+    for (low, high) in rows {
+        high[degree] = low[degree];
+        for k in 1..=degree {
+            for j in (k..=degree).rev() {
                 low[j] = 0.5 * (low[j] + low[j - 1]);
             }
-            high[n - k] = low[n];
+            high[degree - k] = low[degree];
         }
     }
+    layout.pad(low);
+    layout.pad(high);
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
 
+    /// A net in its layout, from its coefficients in rows.
+    pub(in super::super) fn laid_out(layout: Layout, coefficients: &[f64]) -> Vec<f64> {
+        let mut g = vec![0.0; layout.len()];
+        for (at, x) in coefficients.iter().enumerate() {
+            g[layout.at(at / (layout.n + 1), at % (layout.n + 1))] = *x;
+        }
+        layout.pad(&mut g);
+        g
+    }
+
+    /// Every level that this processor has.
+    pub(in super::super) fn levels() -> Vec<Level> {
+        vec![Level::baseline(), Level::new()]
+    }
+
     #[test]
-    fn differences_and_halves_agree_with_their_definitions() {
-        let (m, n) = (4, 6);
-        let g: Vec<f64> = (0..(m + 1) * (n + 1)).map(|i| f64::from((i * i % 17) as u32) - 5.0).collect();
-        let at = |i: usize, j: usize| g[i * (n + 1) + j];
-        assert_eq!(extremes(&g), (-5.0, 11.0));
-        let mut seconds = (f64::INFINITY, f64::INFINITY, 0.0_f64);
-        for i in 0..=m {
-            for j in 0..=n {
-                if i + 2 <= m {
-                    seconds.0 = seconds.0.min(at(i, j) - 2.0 * at(i + 1, j) + at(i + 2, j));
-                }
-                if j + 2 <= n {
-                    seconds.1 = seconds.1.min(at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2));
-                }
-                if i < m && j < n {
-                    seconds.2 = seconds.2.max((at(i, j) - at(i + 1, j) - at(i, j + 1) + at(i + 1, j + 1)).abs());
+    fn differences_edges_and_halves_agree_with_their_definitions() {
+        for (m, n) in [(4, 6), (2, 2), (6, 2), (8, 10), (0, 6), (6, 0), (14, 0), (0, 2)] {
+            let layout = Layout { m, n };
+            let plain: Vec<f64> = (0..(m + 1) * (n + 1)).map(|i| f64::from((i * i * 7 % 23) as u32) - 5.0).collect();
+            let at = |i: usize, j: usize| plain[i * (n + 1) + j];
+            let g = laid_out(layout, &plain);
+            let low = plain.iter().copied().fold(f64::INFINITY, f64::min);
+            let high = plain.iter().copied().fold(f64::NEG_INFINITY, f64::max);
+            let mut expected = Differences { down: f64::INFINITY, along: f64::INFINITY, mixed: 0.0 };
+            for i in 0..=m {
+                for j in 0..=n {
+                    if i + 2 <= m {
+                        let second = at(i, j) - 2.0 * at(i + 1, j) + at(i + 2, j);
+                        let least = if n == 0 { &mut expected.along } else { &mut expected.down };
+                        *least = least.min(second);
+                    }
+                    if j + 2 <= n {
+                        expected.along = expected.along.min(at(i, j) - 2.0 * at(i, j + 1) + at(i, j + 2));
+                    }
+                    if i < m && j < n {
+                        let mixed = at(i, j) - at(i + 1, j) - at(i, j + 1) + at(i + 1, j + 1);
+                        expected.mixed = expected.mixed.max(mixed.abs());
+                    }
                 }
             }
-        }
-        let found = (least_second_down(&g, n + 1), least_second_along(&g, n + 1), largest_mixed(&g, n + 1));
-        assert_eq!(found, seconds);
-        let (mut low, mut high) = (g.clone(), g.clone());
-        halve_down(&mut low, &mut high, m, n + 1);
-        // the halves meet, and keep the ends
-        assert_eq!(low[m * (n + 1)..], high[..=n]);
-        assert_eq!((&low[..=n], &high[m * (n + 1)..]), (&g[..=n], &g[m * (n + 1)..]));
-        let (mut low, mut high) = (g.clone(), g.clone());
-        halve_along(&mut low, &mut high, n);
-        for i in 0..=m {
-            assert_eq!(low[i * (n + 1) + n], high[i * (n + 1)]);
-            let row = &g[i * (n + 1)..(i + 1) * (n + 1)];
-            let middle: f64 = (0..=n).map(|j| row[j] * perpend_kernel::binomial(n, j) / 64.0).sum();
-            assert!((high[i * (n + 1)] - middle).abs() < 1e-14);
+            for level in levels() {
+                assert_eq!((least(level, &g, layout), most(level, &g, layout)), (low, high));
+                assert_eq!(largest(level, &g, layout), high.max(-low));
+                assert_eq!(dispatch!(level, simd => differences(simd, &g, layout)), expected, "{m} {n}");
+            }
+            if m > 0 && n > 0 {
+                for edge in EDGES {
+                    let on_edge = |i: usize, j: usize| match edge {
+                        Edge::Row { last } => i == if last { m } else { 0 },
+                        Edge::Column { last } => j == if last { n } else { 0 },
+                    };
+                    let held = |i: usize, j: usize| match edge {
+                        Edge::Row { last } => at(if last { m } else { 0 }, j),
+                        Edge::Column { last } => at(i, if last { n } else { 0 }),
+                    };
+                    let pairs = (0..=m).flat_map(|i| (0..=n).map(move |j| (i, j)));
+                    let others = pairs.filter(|(i, j)| !on_edge(*i, *j)).map(|(i, j)| at(i, j) - held(i, j));
+                    let expected = others.fold(f64::INFINITY, f64::min);
+                    for level in levels() {
+                        assert_eq!(above(level, &g, layout, edge), expected);
+                    }
+                    let mut taken = g.clone();
+                    let reduced = take_edge(&mut taken, layout, edge);
+                    let along: Vec<f64> = match edge {
+                        Edge::Row { .. } => (0..=n).map(|j| held(0, j)).collect(),
+                        Edge::Column { .. } => (0..=m).map(|i| held(i, 0)).collect(),
+                    };
+                    assert_eq!(taken[..=reduced.along()], along);
+                }
+            }
+            for in_s in [false, true] {
+                if (in_s && m == 0) || (!in_s && n == 0) {
+                    continue;
+                }
+                let (mut low, mut high) = (g.clone(), vec![0.0; g.len()]);
+                halve(&mut low, &mut high, layout, in_s);
+                let degree = if in_s { m } else { n };
+                let index = |k: usize, other: usize| if in_s { layout.at(k, other) } else { layout.at(other, k) };
+                for other in 0..=if in_s { n } else { m } {
+                    let line: Vec<f64> = (0..=degree).map(|k| g[index(k, other)]).collect();
+                    // the halves keep the ends and meet in the middle
+                    assert_eq!((low[index(0, other)], high[index(degree, other)]), (line[0], line[degree]));
+                    let scale = f64::from(2_u32.pow(degree as u32));
+                    let terms = line.iter().enumerate().map(|(k, x)| x * perpend_kernel::binomial(degree, k) / scale);
+                    let middle: f64 = terms.sum();
+                    assert!((low[index(degree, other)] - middle).abs() < 1e-13);
+                    assert_eq!(low[index(degree, other)], high[index(0, other)]);
+                }
+            }
         }
     }
 }

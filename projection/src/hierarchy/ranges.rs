@@ -21,6 +21,7 @@ use glam::{DMat3, DVec3};
 
 use super::convex::{CORRELATED, Curvature};
 use super::form::{Shape, rounding_bound};
+use super::net::Layout;
 use super::newton::Domain;
 
 /// An affine function of the query for each coefficient of a net: the box around all of them.
@@ -90,28 +91,29 @@ pub(super) struct Ranges {
 impl Ranges {
     /// Of a leaf whose tables are `tables`, along the axes that are the rows of `axes`.
     pub(super) fn new(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, radius: f64, heaviest: f64) -> Self {
-        let ((m, n), len) = (leaf.form_degree(), leaf.form_len());
-        let width = n + 1;
+        let layout = leaf.layout();
+        let (Layout { m, n }, len) = (layout, layout.len());
         let table = |k: usize| tables.get(k * len..(k + 1) * len).unwrap_or_default();
         let turned: Vec<DVec3> =
             (0..len).map(|at| *axes * DVec3::new(table(1)[at], table(2)[at], table(3)[at])).collect();
         let along = |axis: usize| turned.iter().map(|c1| c1[axis]).collect::<Vec<f64>>();
         let (cx, cy, cz) = (along(0), along(1), along(2));
         let tables = [table(0), &cx, &cy, &cz, table(4)];
-        let inside = |rows: usize, columns: usize| {
-            (0..(m + 1).saturating_sub(rows))
-                .flat_map(move |i| (0..(n + 1).saturating_sub(columns)).map(move |j| i * width + j))
+        // all coefficients that have so many others after them in s and in t
+        let inside = |s: usize, t: usize| {
+            (0..(m + 1).saturating_sub(s)).flat_map(move |i| (0..(n + 1).saturating_sub(t)).map(move |j| layout.at(i, j)))
         };
+        let (step_s, step_t) = (layout.at(1, 0), layout.at(0, 1));
         let first = |step: usize| move |g: &[f64], at: usize| g[at + step] - g[at];
         let second = |step: usize| move |g: &[f64], at: usize| g[at] - 2.0 * g[at + step] + g[at + 2 * step];
-        let mixed = |g: &[f64], at: usize| (g[at] - g[at + 1]) - (g[at + width] - g[at + width + 1]);
+        let mixed = |g: &[f64], at: usize| (g[at] - g[at + step_t]) - (g[at + step_s] - g[at + step_s + step_t]);
         let factors = [m, n, m * (m - 1), m * n, n * n.saturating_sub(1)];
         Self {
-            s: Affine::around(&tables, factors[0], inside(1, 0), first(width)),
-            t: Affine::around(&tables, factors[1], inside(0, 1), first(1)),
-            ss: Affine::around(&tables, factors[2], inside(2, 0), second(width)),
+            s: Affine::around(&tables, factors[0], inside(1, 0), first(step_s)),
+            t: Affine::around(&tables, factors[1], inside(0, 1), first(step_t)),
+            ss: Affine::around(&tables, factors[2], inside(2, 0), second(step_s)),
             st: Affine::around(&tables, factors[3], inside(1, 1), mixed),
-            tt: Affine::around(&tables, factors[4], inside(0, 2), second(1)),
+            tt: Affine::around(&tables, factors[4], inside(0, 2), second(step_t)),
             factors: factors.map(|factor| factor as f64),
             degree: leaf.degree,
             radius,

@@ -9,16 +9,18 @@
 //! - as narrow as the resolution: undecided. Undecided boxes that touch make one set. Where Newton's method leads from all of them to one
 //!   point, that is a foot (its form is flat, or rounding hides its curvature); else they are a continuum.
 
+use fearless_simd::Level;
 use glam::DVec3;
 
 use super::certify::Part;
 use super::convex::{self, Patch};
 use super::form::{form, rounding_bound};
 use super::leaf::Leaf;
+use super::net::{self, Edge, Layout};
 use super::newton::{self, Domain, Found, Search};
 use super::reply::Settled;
 use super::state::{Foot, State};
-use super::{Hierarchy, LocalSolution, ROUNDING, Workspace, holds, net, squared};
+use super::{Hierarchy, LocalSolution, ROUNDING, Workspace, holds, squared};
 use crate::answer::ParameterBox;
 use crate::query::Query;
 use crate::solver::Tie;
@@ -39,8 +41,7 @@ pub(crate) struct TieSet {
 /// A box that waits: its net and degrees, and the bound of its rounding.
 struct Cell {
     net: Vec<f64>,
-    m: usize,
-    n: usize,
+    layout: Layout,
     domain: Domain,
     rounding: f64,
 }
@@ -124,25 +125,25 @@ impl Hierarchy {
         let leaf = part.leaf;
         let x = state.point - leaf.origin;
         let threshold = if leaf.rational { 0.0 } else { squared(reach) };
-        let (m, n) = leaf.shape().form_degree();
+        let (layout, level) = (leaf.shape().layout(), leaf.level);
         let mut net = Vec::new();
-        form(leaf.shape(), &leaf.opened().tables, x, reach, &mut net);
+        form(level, leaf.shape(), &leaf.opened().tables, x, reach, &mut net);
         let rounding = rounding_bound(leaf.degree, x.length(), leaf.radius, reach, leaf.heaviest);
-        let mut cells = vec![Cell { net, m, n, domain: Domain::WHOLE, rounding }];
+        let mut cells = vec![Cell { net, layout, domain: Domain::WHOLE, rounding }];
         let mut matrices = Vec::new();
         let resolution = coincidence.max(RESOLUTION);
         while let Some(mut cell) = cells.pop() {
-            if net::least(&cell.net) > threshold + cell.rounding {
+            if net::least(level, &cell.net, cell.layout) > threshold + cell.rounding {
                 continue;
             }
             let diameter = diameter(leaf, &cell.domain);
             // how far the form may fall below the threshold, and how much of the box the points that do may take up
-            let depth = threshold + 2.0 * cell.rounding - net::least(&cell.net);
+            let depth = threshold + 2.0 * cell.rounding - net::least(level, &cell.net, cell.layout);
             let share = resolution / diameter;
-            let wide = diameter > resolution && net::most(&cell.net) < threshold - cell.rounding;
-            while !wide && reduce(&mut cell, depth / share) {}
-            let corner = cell.m == 0 && cell.n == 0;
-            let foot = (!wide && (corner || is_steep_valley(&cell, depth, share, &mut matrices))).then(|| {
+            let wide = diameter > resolution && net::most(level, &cell.net, cell.layout) < threshold - cell.rounding;
+            while !wide && reduce(level, &mut cell, depth / share) {}
+            let corner = cell.layout == Layout { m: 0, n: 0 };
+            let foot = (!wide && (corner || is_steep_valley(level, &cell, depth, share, &mut matrices))).then(|| {
                 let start = (0.5 * (cell.domain.s.0 + cell.domain.s.1), 0.5 * (cell.domain.t.0 + cell.domain.t.1));
                 part.foot(&converge(leaf, x, cell.domain, start, state))
             });
@@ -158,7 +159,7 @@ impl Hierarchy {
             } else {
                 state.work -= 1;
                 let down = is_longer_down(leaf, &cell.domain);
-                cells.extend(halves(cell, down));
+                cells.extend(halves(level, cell, down));
             }
         }
     }
@@ -247,61 +248,63 @@ fn converge(leaf: &Leaf, x: DVec3, domain: Domain, start: (f64, f64), state: &mu
 
 /// Whether the form is convex on the box, and rises so fast that its points below the threshold take up no more than
 /// `share` of the box in either direction: where the form falls to `-depth`, they reach `sqrt(2 depth / curvature)` far.
-fn is_steep_valley(cell: &Cell, depth: f64, share: f64, matrices: &mut Vec<[f64; 3]>) -> bool {
+fn is_steep_valley(level: Level, cell: &Cell, depth: f64, share: f64, matrices: &mut Vec<f64>) -> bool {
     // in units of the box
-    let patch = Patch { g: &cell.net, m: cell.m, n: cell.n, extent: (1.0, 1.0), rounding: cell.rounding };
+    let patch = Patch { g: &cell.net, layout: cell.layout, extent: (1.0, 1.0), rounding: cell.rounding };
     let steep = |degree: usize, curvature: f64| degree == 0 || 2.0 * depth <= curvature * share * share;
-    convex::curvature(patch, matrices).is_some_and(|c| steep(cell.m, c.s) && steep(cell.n, c.t))
+    let curvature = convex::curvature(level, patch, matrices);
+    curvature.is_some_and(|c| steep(cell.layout.m, c.s) && steep(cell.layout.n, c.t))
 }
 
 /// Replaces a box by an edge above which the form rises at once: `G(s, t) >= G(0, t) + v s`, where all other rows stay above the
 /// edge's by `v` (for `1 - (1 - s)^m >= s`), the bound of rounding apart. With `v` of at least `steepness`, the points below the
-/// threshold stay beside the edge.
-fn reduce(cell: &mut Cell, steepness: f64) -> bool {
-    let (m, n, width) = (cell.m, cell.n, cell.n + 1);
+/// threshold stay beside the edge. A box with one direction is replaced by an end likewise.
+fn reduce(level: Level, cell: &mut Cell, steepness: f64) -> bool {
+    let Layout { m, n } = cell.layout;
     let enough = steepness + 2.0 * cell.rounding;
-    if m > 0 {
-        for row in [0, m] {
-            if net::rows_above(&cell.net, width, row) > enough {
-                cell.net = cell.net[row * width..(row + 1) * width].to_vec();
-                let at = if row == 0 { cell.domain.s.0 } else { cell.domain.s.1 };
-                (cell.m, cell.domain.s) = (0, (at, at));
-                return true;
-            }
+    let end = |(from, to): (f64, f64), last: bool| if last { (to, to) } else { (from, from) };
+    if m > 0 && n > 0 {
+        let steep = |edge: &Edge| net::above(level, &cell.net, cell.layout, *edge) > enough;
+        let Some(edge) = net::EDGES.into_iter().find(steep) else { return false };
+        cell.layout = net::take_edge(&mut cell.net, cell.layout, edge);
+        match edge {
+            Edge::Row { last } => cell.domain.s = end(cell.domain.s, last),
+            Edge::Column { last } => cell.domain.t = end(cell.domain.t, last),
         }
+        return true;
     }
-    if n > 0 {
-        for column in [0, n] {
-            if net::columns_above(&cell.net, width, column, enough) > enough {
-                cell.net = cell.net.iter().skip(column).step_by(width).copied().collect();
-                let at = if column == 0 { cell.domain.t.0 } else { cell.domain.t.1 };
-                (cell.n, cell.domain.t) = (0, (at, at));
-                return true;
-            }
-        }
+    let (degree, row) = (cell.layout.along(), &mut cell.net);
+    let above = |at: usize| (0..=degree).filter(|k| *k != at).all(|k| row[k] - row[at] > enough);
+    if degree == 0 || !(above(0) || above(degree)) {
+        return false;
     }
-    false
+    let last = !above(0);
+    row[0] = row[if last { degree } else { 0 }];
+    *(if m > 0 { &mut cell.domain.s } else { &mut cell.domain.t }) =
+        end(if m > 0 { cell.domain.s } else { cell.domain.t }, last);
+    cell.layout = Layout { m: 0, n: 0 };
+    cell.layout.pad(&mut cell.net);
+    true
 }
 
-fn halves(cell: Cell, down: bool) -> [Cell; 2] {
-    let Cell { net: mut low, m, n, domain, rounding } = cell;
-    let (_, largest) = net::extremes(&low);
+fn halves(level: Level, cell: Cell, down: bool) -> [Cell; 2] {
+    let Cell { net: mut low, layout, domain, rounding } = cell;
+    let largest = net::largest(level, &low, layout);
     let mut high = vec![0.0; low.len()];
-    let down = n == 0 || (m > 0 && down);
+    let in_s = layout.n == 0 || (layout.m > 0 && down);
+    net::halve(&mut low, &mut high, layout, in_s);
     let (mut first, mut second) = (domain, domain);
-    let degree = if down {
-        net::halve_down(&mut low, &mut high, m, n + 1);
+    let degree = if in_s {
         let middle = 0.5 * (domain.s.0 + domain.s.1);
         (first.s.1, second.s.0) = (middle, middle);
-        m
+        layout.m
     } else {
-        net::halve_along(&mut low, &mut high, n);
         let middle = 0.5 * (domain.t.0 + domain.t.1);
         (first.t.1, second.t.0) = (middle, middle);
-        n
+        layout.n
     };
     let rounding = rounding + degree as f64 * ROUNDING * largest;
-    [Cell { net: low, m, n, domain: first, rounding }, Cell { net: high, m, n, domain: second, rounding }]
+    [Cell { net: low, layout, domain: first, rounding }, Cell { net: high, layout, domain: second, rounding }]
 }
 
 /// The largest distance between the corners and the middle of a box of a leaf: as good a diameter as the resolution needs.
