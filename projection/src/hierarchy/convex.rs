@@ -3,7 +3,7 @@
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x4};
 
-use super::net::{self, Differences, LANES, Layout};
+use super::net::{self, Differences, Extent, LANES, Layout, with_extent};
 
 /// `H >= diag(s, t)` on a box, both positive: the form's second derivatives in the leaf's parameters.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -31,14 +31,24 @@ pub(super) const CORRELATED: f64 = 0.98;
 ///
 /// `scratch` is working memory.
 pub(super) fn curvature(level: Level, patch: Patch<'_>, scratch: &mut Vec<f64>) -> Option<Curvature> {
-    dispatch!(level, simd => {
-        let differences = net::differences(simd, patch.g, patch.layout);
-        match patch.layout {
-            Layout { m: 0, .. } => in_one(patch, differences).map(|t| Curvature { s: 0.0, t: t / patch.extent.1.powi(2) }),
-            Layout { n: 0, .. } => in_one(patch, differences).map(|s| Curvature { s: s / patch.extent.0.powi(2), t: 0.0 }),
-            _ => by_intervals(patch, differences).or_else(|| by_matrices(simd, patch, scratch)),
+    dispatch!(level, simd => with_extent!(patch.layout, extent => either(simd, patch, extent, scratch)))
+}
+
+#[inline(always)]
+fn either<S: Simd>(simd: S, patch: Patch<'_>, extent: impl Extent, scratch: &mut Vec<f64>) -> Option<Curvature> {
+    let differences = net::differences(simd, patch.g, extent);
+    match patch.layout {
+        Layout { m: 0, .. } => {
+            in_one(patch, differences).map(|t| Curvature { s: 0.0, t: t / patch.extent.1.powi(2) })
         }
-    })
+        Layout { n: 0, .. } => {
+            in_one(patch, differences).map(|s| Curvature { s: s / patch.extent.0.powi(2), t: 0.0 })
+        }
+        _ => by_intervals(patch, differences).or_else(
+            #[inline(always)]
+            || by_matrices(simd, patch, extent, scratch),
+        ),
+    }
 }
 
 /// The least second derivative of a net in one variable over its own parameter, if that is positive.
@@ -65,6 +75,19 @@ fn by_intervals(patch: Patch<'_>, differences: Differences) -> Option<Curvature>
     (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
 }
 
+/// Lanes of `weight` whose index `j` lies in a range, zeros elsewhere.
+#[inline(always)]
+fn within<S: Simd>(j: f64x4<S>, from: f64, to: f64, weight: f64x4<S>) -> f64x4<S> {
+    (j.simd_ge(from) & j.simd_le(to)).select(weight, f64x4::splat(j.simd, 0.0))
+}
+
+/// The negative first derivative along the row at `at`, raised to the net's degree, from the weights of both differences.
+#[inline(always)]
+fn slope<S: Simd>(simd: S, g: &[f64], at: usize, weights: [f64x4<S>; 2]) -> f64x4<S> {
+    let (behind, here, next) = (net::before(simd, g, at, 1), net::load(simd, g, at), net::load(simd, g, at + 1));
+    (here - next) * weights[0] + (behind - here) * weights[1]
+}
+
 /// The Hessian as a Bernstein form with 2×2 matrices for coefficients.
 ///
 /// The nets of second derivatives, raised to degree `(m, n)`, are
@@ -79,57 +102,49 @@ fn by_intervals(patch: Patch<'_>, differences: Differences) -> Option<Curvature>
 /// With `A` and `C` scaled by their means the least eigenvalue of a matrix is at least `(a c - b²) / (a + c)`; the least of these,
 /// times the means, is the bound.
 #[inline(always)]
-fn by_matrices<S: Simd>(simd: S, patch: Patch<'_>, scratch: &mut Vec<f64>) -> Option<Curvature> {
-    let Patch { g, layout, extent, rounding } = patch;
-    let Layout { m, n } = layout;
-    let stride = layout.stride();
+fn by_matrices<S: Simd>(simd: S, patch: Patch<'_>, size: impl Extent, scratch: &mut Vec<f64>) -> Option<Curvature> {
+    let Patch { g, extent, rounding, .. } = patch;
+    let (m, n, stride) = (size.m(), size.n(), size.stride());
+    let g = &g[..size.rows_len() + LANES];
     let error = |factor: usize| 4.0 * rounding * factor as f64;
     let (error_a, error_b, error_c) = (error(m * (m - 1)), error(m * n), error(n * (n - 1)));
     let zero = f64x4::splat(simd, 0.0);
-    // rows of the three nets side by side; each is kept for the second pass
-    let size = (m + 1) * stride;
+    // rows of the three nets side by side, kept for the second pass
     scratch.clear();
-    scratch.resize(3 * size, 0.0);
-    let load = |at: usize| f64x4::from_slice(simd, &g[at..at + LANES]);
+    scratch.resize(3 * size.rows_len(), 0.0);
+    let (nets_a, rest) = scratch.split_at_mut(size.rows_len());
+    let (nets_b, nets_c) = rest.split_at_mut(size.rows_len());
     let (mut sum_a, mut sum_c) = (zero, zero);
-    for column in (0..stride).step_by(LANES) {
-        let j = f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]) + column as f64;
-        let inside = j.simd_le(n as f64);
-        let left = (zero + n as f64) - j;
+    let mut column = 0;
+    while column < stride {
+        let j = net::indices(simd, column);
+        let last = n as f64;
+        let inside = j.simd_le(last);
+        let left = (zero + last) - j;
         // the weights of the differences at j, j - 1 and j - 2; 0 where one lies outside, also in the lanes beyond the row
-        let within = |weight: f64x4<S>, from: f64, to: f64| {
-            (j.simd_ge(from) & j.simd_le(to)).select(weight, zero)
-        };
-        let (last, here) = (n as f64, left * (left - 1.0));
-        let second = [within(here, 0.0, last - 2.0), within(j * left * 2.0, 1.0, last - 1.0), within(j * (j - 1.0), 2.0, last)];
-        let first = [within(left, 0.0, last - 1.0), within(j, 1.0, last)];
-        let slope = |row: usize| {
-            let at = row * stride + column;
-            let (here, behind) = (load(at), net::before(simd, g, at, 1));
-            (here - load(at + 1)) * first[0] + (behind - here) * first[1]
-        };
-        let bend = |row: usize| load(row * stride + column) - load((row + 1) * stride + column) * 2.0 + load((row + 2) * stride + column);
-        let (mut slopes, mut bends) = ([zero, zero, slope(0)], [zero, zero, zero]);
+        let second = [
+            within(j, 0.0, last - 2.0, left * (left - 1.0)),
+            within(j, 1.0, last - 1.0, j * left * 2.0),
+            within(j, 2.0, last, j * (j - 1.0)),
+        ];
+        let first = [within(j, 0.0, last - 1.0, left), within(j, 1.0, last, j)];
+        // rows i, i + 1 and i + 2; slopes of rows i - 1, i and i + 1; bends from i - 2, i - 1 and i
+        let mut rows = [0, 1, 2].map(|i| net::load(simd, g, i * stride + column));
+        let (mut slopes, mut bends) = ([zero, zero, slope(simd, g, column, first)], [zero, zero, zero]);
         for i in 0..=m {
             let at = i * stride + column;
             let (fi, mi) = (i as f64, (m - i) as f64);
-            bends = [bends[1], bends[2], if i + 2 <= m { bend(i) } else { zero }];
-            slopes = [slopes[1], slopes[2], if i < m { slope(i + 1) } else { zero }];
-            let mut a = bends[2] * (mi * (mi - 1.0));
-            if i > 0 {
-                a += bends[1] * (2.0 * fi * mi);
+            bends = [bends[1], bends[2], zero];
+            slopes = [slopes[1], slopes[2], zero];
+            if i + 2 <= m {
+                bends[2] = rows[0] - rows[1] * 2.0 + rows[2];
             }
-            if i > 1 {
-                a += bends[0] * (fi * (fi - 1.0));
-            }
-            let mut b = zero;
             if i < m {
-                b += (slopes[1] - slopes[2]) * mi;
+                slopes[2] = slope(simd, g, at + stride, first);
             }
-            if i > 0 {
-                b += (slopes[0] - slopes[1]) * fi;
-            }
-            let (x, y, z) = (load(at), load(at + 1), load(at + 2));
+            let a = bends[2] * (mi * (mi - 1.0)) + bends[1] * (2.0 * fi * mi) + bends[0] * (fi * (fi - 1.0));
+            let b = (slopes[1] - slopes[2]) * mi + (slopes[0] - slopes[1]) * fi;
+            let (x, y, z) = (rows[0], net::load(simd, g, at + 1), net::load(simd, g, at + 2));
             let (w, v) = (net::before(simd, g, at, 1), net::before(simd, g, at, 2));
             let c = (x - y * 2.0 + z) * second[0] + (w - x * 2.0 + y) * second[1] + (v - w * 2.0 + x) * second[2];
             let (a, b, c) = (a - error_a, b.abs() + error_b, c - error_c);
@@ -140,26 +155,31 @@ fn by_matrices<S: Simd>(simd: S, patch: Patch<'_>, scratch: &mut Vec<f64>) -> Op
             }
             sum_a += inside.select(a, zero);
             sum_c += inside.select(c, zero);
-            a.store_slice(&mut scratch[at..at + LANES]);
-            b.store_slice(&mut scratch[size + at..size + at + LANES]);
-            c.store_slice(&mut scratch[2 * size + at..2 * size + at + LANES]);
+            a.store_slice(&mut nets_a[at..at + LANES]);
+            b.store_slice(&mut nets_b[at..at + LANES]);
+            c.store_slice(&mut nets_c[at..at + LANES]);
+            rows = [rows[1], rows[2], if i + 3 <= m { net::load(simd, g, at + 3 * stride) } else { zero }];
         }
+        column += LANES;
     }
     let count = ((m + 1) * (n + 1)) as f64;
     let mean = |sum: f64x4<S>| ((sum[0] + sum[1]) + (sum[2] + sum[3])) / count;
     let (mean_a, mean_c) = (mean(sum_a), mean(sum_c));
     let (scale_a, scale_c) = (mean_a.recip(), mean_c.recip());
     let mut theta = zero + f64::INFINITY;
-    for column in (0..stride).step_by(LANES) {
-        let inside = (f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]) + column as f64).simd_le(n as f64);
-        for at in (column..size).step_by(stride) {
-            let load = |from: usize| f64x4::from_slice(simd, &scratch[from + at..from + at + LANES]);
-            let (a, b, c) = (load(0) * scale_a, load(size), load(2 * size) * scale_c);
+    let mut column = 0;
+    while column < stride {
+        let inside = net::indices(simd, column).simd_le(n as f64);
+        for i in 0..=m {
+            let at = i * stride + column;
+            let a = net::load(simd, nets_a, at) * scale_a;
+            let (b, c) = (net::load(simd, nets_b, at), net::load(simd, nets_c, at) * scale_c);
             let eigenvalue = (a * c - b * b * (scale_a * scale_c)) / (a + c);
             theta = theta.min(inside.select(eigenvalue, zero + f64::INFINITY));
         }
+        column += LANES;
     }
-    let theta = theta[0].min(theta[1]).min(theta[2].min(theta[3]));
+    let theta = net::least_lane(theta);
     (theta >= WORTHWHILE)
         .then(|| Curvature { s: theta * mean_a / extent.0.powi(2), t: theta * mean_c / extent.1.powi(2) })
 }
@@ -201,8 +221,8 @@ mod tests {
     fn both(patch: Patch<'_>) -> [Option<Curvature>; 2] {
         let found = levels().into_iter().map(|level| {
             dispatch!(level, simd => [
-                by_intervals(patch, net::differences(simd, patch.g, patch.layout)),
-                by_matrices(simd, patch, &mut Vec::new()),
+                by_intervals(patch, net::differences(simd, patch.g, net::Any(patch.layout))),
+                by_matrices(simd, patch, net::Fixed::<4, 4>, &mut Vec::new()),
             ])
         });
         let found: Vec<_> = found.collect();

@@ -67,8 +67,81 @@ impl Layout {
     }
 }
 
+/// Degrees of a net in two variables that loops may know beforehand.
+pub(super) trait Extent: Copy {
+    /// The degree from row to row.
+    fn m(self) -> usize;
+    /// The degree along the rows.
+    fn n(self) -> usize;
+
+    /// How far rows are apart.
+    #[inline(always)]
+    fn stride(self) -> usize {
+        (self.n() + 1).next_multiple_of(LANES)
+    }
+
+    /// The numbers that the rows take up.
+    #[inline(always)]
+    fn rows_len(self) -> usize {
+        (self.m() + 1) * self.stride()
+    }
+}
+
+/// Degrees that are known when the program is built.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Fixed<const M: usize, const N: usize>;
+
+impl<const M: usize, const N: usize> Extent for Fixed<M, N> {
+    #[inline(always)]
+    fn m(self) -> usize {
+        M
+    }
+
+    #[inline(always)]
+    fn n(self) -> usize {
+        N
+    }
+}
+
+/// Any degrees: of a net in one variable, one row.
+#[derive(Debug, Clone, Copy)]
+pub(super) struct Any(pub Layout);
+
+impl Extent for Any {
+    #[inline(always)]
+    fn m(self) -> usize {
+        self.0.down()
+    }
+
+    #[inline(always)]
+    fn n(self) -> usize {
+        self.0.along()
+    }
+}
+
+/// Calls a function that is generic over [`Extent`] with the usual degrees known beforehand.
+macro_rules! with_extent {
+    ($layout:expr, $extent:ident => $call:expr) => {
+        match $layout {
+            Layout { m: 6, n: 6 } => {
+                let $extent = $crate::hierarchy::net::Fixed::<6, 6>;
+                $call
+            }
+            Layout { m: 4, n: 4 } => {
+                let $extent = $crate::hierarchy::net::Fixed::<4, 4>;
+                $call
+            }
+            layout => {
+                let $extent = $crate::hierarchy::net::Any(layout);
+                $call
+            }
+        }
+    };
+}
+pub(super) use with_extent;
+
 #[inline(always)]
-fn load<S: Simd>(simd: S, g: &[f64], at: usize) -> f64x4<S> {
+pub(super) fn load<S: Simd>(simd: S, g: &[f64], at: usize) -> f64x4<S> {
     f64x4::from_slice(simd, &g[at..at + LANES])
 }
 
@@ -84,18 +157,18 @@ pub(super) fn before<S: Simd>(simd: S, g: &[f64], at: usize, by: usize) -> f64x4
 }
 
 #[inline(always)]
-fn least_lane<S: Simd>(x: f64x4<S>) -> f64 {
+pub(super) fn least_lane<S: Simd>(x: f64x4<S>) -> f64 {
     let smaller = |a: f64, b: f64| if b < a { b } else { a };
     smaller(smaller(x[0], x[1]), smaller(x[2], x[3]))
 }
 
 /// The indices of the lanes that begin at `from`.
 #[inline(always)]
-fn indices<S: Simd>(simd: S, from: usize) -> f64x4<S> {
+pub(super) fn indices<S: Simd>(simd: S, from: usize) -> f64x4<S> {
     f64x4::simd_from(simd, [0.0, 1.0, 2.0, 3.0]) + from as f64
 }
 
-/// The least of `f` over all chunks of `0..len`.
+/// The least of `f` over the chunks of `0..len`.
 #[inline(always)]
 fn least_of<S: Simd>(simd: S, len: usize, f: impl Fn(usize) -> f64x4<S>) -> f64 {
     let mut low = f64x4::splat(simd, f64::INFINITY);
@@ -109,17 +182,20 @@ fn least_of<S: Simd>(simd: S, len: usize, f: impl Fn(usize) -> f64x4<S>) -> f64 
 
 /// The least coefficient.
 pub(super) fn least(level: Level, g: &[f64], layout: Layout) -> f64 {
-    dispatch!(level, simd => least_of(simd, layout.rows_len(), |at| load(simd, g, at)))
+    dispatch!(level, simd => with_extent!(layout, extent => {
+        let g = &g[..extent.rows_len()];
+        least_of(simd, g.len(), #[inline(always)] |at| load(simd, g, at))
+    }))
 }
 
 /// The largest coefficient.
 pub(super) fn most(level: Level, g: &[f64], layout: Layout) -> f64 {
-    -dispatch!(level, simd => least_of(simd, layout.rows_len(), |at| -load(simd, g, at)))
+    -dispatch!(level, simd => least_of(simd, layout.rows_len(), #[inline(always)] |at| -load(simd, g, at)))
 }
 
 /// The largest |coefficient|.
 pub(super) fn largest(level: Level, g: &[f64], layout: Layout) -> f64 {
-    -dispatch!(level, simd => least_of(simd, layout.rows_len(), |at| -load(simd, g, at).abs()))
+    -dispatch!(level, simd => least_of(simd, layout.rows_len(), #[inline(always)] |at| -load(simd, g, at).abs()))
 }
 
 /// An edge of a net in two variables.
@@ -138,40 +214,50 @@ pub(super) const EDGES: [Edge; 4] =
 /// An edge that holds a coefficient of at most `holds`, and above which everything else stays but for `given` at most; with how far it stays above:
 /// negative where it falls below.
 pub(super) fn edge_below(level: Level, g: &[f64], layout: Layout, holds: f64, given: f64) -> Option<(Edge, f64)> {
-    dispatch!(level, simd => EDGES.into_iter().find_map(|edge| {
-        let above = match edge {
-            Edge::Row { last } => {
-                let start = if last { layout.rows_len() - layout.stride() } else { 0 };
-                let held = least_of(simd, layout.stride(), |at| load(simd, g, start + at)) <= holds;
-                held.then(|| rows_above(simd, g, layout, last))
+    dispatch!(level, simd => with_extent!(layout, extent => find_edge(simd, g, extent, holds, given)))
+}
+
+#[inline(always)]
+fn find_edge<S: Simd>(simd: S, g: &[f64], extent: impl Extent, holds: f64, given: f64) -> Option<(Edge, f64)> {
+    let (stride, g) = (extent.stride(), &g[..extent.rows_len()]);
+    for last in [false, true] {
+        let start = if last { extent.m() * stride } else { 0 };
+        if least_of(simd, stride, #[inline(always)] |at| load(simd, g, start + at)) <= holds {
+            let above = rows_above(simd, g, extent, last);
+            if above >= -given {
+                return Some((Edge::Row { last }, above));
             }
-            Edge::Column { last } => {
-                let at = if last { layout.n } else { 0 };
-                let held = (0..=layout.m).any(|i| g[layout.at(i, at)] <= holds);
-                held.then(|| columns_above(simd, g, layout, last, -given))
+        }
+    }
+    for last in [false, true] {
+        let at = if last { extent.n() } else { 0 };
+        if (0..=extent.m()).any(#[inline(always)] |i| g[i * stride + at] <= holds) {
+            let above = columns_above(simd, g, extent, last, -given);
+            if above >= -given {
+                return Some((Edge::Column { last }, above));
             }
-        };
-        above.filter(|above| *above >= -given).map(|above| (edge, above))
-    }))
+        }
+    }
+    None
 }
 
 /// How far everything else stays above an edge: the least difference, negative where it falls below.
 pub(super) fn above(level: Level, g: &[f64], layout: Layout, edge: Edge) -> f64 {
     dispatch!(level, simd => match edge {
-        Edge::Row { last } => rows_above(simd, g, layout, last),
-        Edge::Column { last } => columns_above(simd, g, layout, last, f64::NEG_INFINITY),
+        Edge::Row { last } => rows_above(simd, g, Any(layout), last),
+        Edge::Column { last } => columns_above(simd, g, Any(layout), last, f64::NEG_INFINITY),
     })
 }
 
 #[inline(always)]
-fn rows_above<S: Simd>(simd: S, g: &[f64], layout: Layout, last: bool) -> f64 {
-    let stride = layout.stride();
-    let (edge, from) = if last { (layout.rows_len() - stride, 0) } else { (0, stride) };
+fn rows_above<S: Simd>(simd: S, g: &[f64], extent: impl Extent, last: bool) -> f64 {
+    let stride = extent.stride();
+    let (edge, from) = if last { (extent.m() * stride, 0) } else { (0, stride) };
     let mut low = f64x4::splat(simd, f64::INFINITY);
     let mut column = 0;
     while column < stride {
         let held = load(simd, g, edge + column);
-        for row in 0..layout.m {
+        for row in 0..extent.m() {
             low = low.min(load(simd, g, from + row * stride + column) - held);
         }
         column += LANES;
@@ -181,24 +267,25 @@ fn rows_above<S: Simd>(simd: S, g: &[f64], layout: Layout, last: bool) -> f64 {
 
 /// May stop early, with some value below `enough`, once it falls below that.
 #[inline(always)]
-fn columns_above<S: Simd>(simd: S, g: &[f64], layout: Layout, last: bool, enough: f64) -> f64 {
-    let (stride, edge) = (layout.stride(), if last { layout.n } else { 0 });
+fn columns_above<S: Simd>(simd: S, g: &[f64], extent: impl Extent, last: bool, enough: f64) -> f64 {
+    let (stride, edge) = (extent.stride(), if last { extent.n() } else { 0 });
     let infinity = f64x4::splat(simd, f64::INFINITY);
-    let mut low = f64::INFINITY;
-    for row in g[..layout.rows_len()].chunks_exact(stride) {
-        let held = row[edge];
-        let least = least_of(simd, stride, |at| {
-            let index = indices(simd, at);
+    let mut low = infinity;
+    for i in 0..=extent.m() {
+        let held = g[i * stride + edge];
+        let mut column = 0;
+        while column < stride {
+            let index = indices(simd, column);
             // the edge itself, and what fills up the row, is no other column
             let other = if last { index.simd_lt(edge as f64) } else { index.simd_gt(0.0) };
-            other.select(load(simd, row, at) - held, infinity)
-        });
-        low = if least < low { least } else { low };
-        if low < enough {
+            low = low.min(other.select(load(simd, g, i * stride + column) - held, infinity));
+            column += LANES;
+        }
+        if least_lane(low) < enough {
             break;
         }
     }
-    low
+    least_lane(low)
 }
 
 /// The edge as a net in one variable, in place of the net.
@@ -232,25 +319,31 @@ pub(super) struct Differences {
 }
 
 #[inline(always)]
-pub(super) fn differences<S: Simd>(simd: S, g: &[f64], layout: Layout) -> Differences {
-    let (stride, rows, columns) = (layout.stride(), layout.down(), layout.along() as f64);
+pub(super) fn differences<S: Simd>(simd: S, g: &[f64], extent: impl Extent) -> Differences {
+    let (stride, rows, columns) = (extent.stride(), extent.m(), extent.n() as f64);
+    let g = &g[..extent.rows_len() + LANES];
     let (infinity, zero) = (f64x4::splat(simd, f64::INFINITY), f64x4::splat(simd, 0.0));
     let (mut down, mut along, mut mixed) = (infinity, infinity, zero);
-    for column in (0..stride).step_by(LANES) {
+    let mut column = 0;
+    while column < stride {
         let index = indices(simd, column);
         let (first, second) = (index.simd_lt(columns), index.simd_le(columns - 2.0));
+        let (mut here, mut right) = (load(simd, g, column), load(simd, g, column + 1));
+        let mut above = zero;
         for i in 0..=rows {
-            let at = i * stride + column;
-            let (here, right) = (load(simd, g, at), load(simd, g, at + 1));
-            along = along.min(second.select(here - right * 2.0 + load(simd, g, at + 2), infinity));
+            let next = load(simd, g, i * stride + column + 2);
+            along = along.min(second.select(here - right * 2.0 + next, infinity));
             if i < rows {
-                let (below, across) = (load(simd, g, at + stride), load(simd, g, at + stride + 1));
+                let at = (i + 1) * stride + column;
+                let (below, across) = (load(simd, g, at), load(simd, g, at + 1));
                 mixed = mixed.max(first.select((here - right) - (below - across), zero).abs());
-                if i + 1 < rows {
-                    down = down.min(here - below * 2.0 + load(simd, g, at + 2 * stride));
+                if i > 0 {
+                    down = down.min(above - here * 2.0 + below);
                 }
+                (above, here, right) = (here, below, across);
             }
         }
+        column += LANES;
     }
     Differences { down: least_lane(down), along: least_lane(along), mixed: -least_lane(-mixed) }
 }
@@ -357,7 +450,7 @@ pub(super) mod tests {
             for level in levels() {
                 assert_eq!((least(level, &g, layout), most(level, &g, layout)), (low, high));
                 assert_eq!(largest(level, &g, layout), high.max(-low));
-                assert_eq!(dispatch!(level, simd => differences(simd, &g, layout)), expected, "{m} {n}");
+                assert_eq!(dispatch!(level, simd => differences(simd, &g, Any(layout))), expected, "{m} {n}");
             }
             if m > 0 && n > 0 {
                 for edge in EDGES {
