@@ -1,4 +1,4 @@
-//! A lower bound of the form on a box, seen from an evaluated point where it is convex.
+//! Lower bounds of the form, and of the squared distance itself, on a box where they are convex, seen from an evaluated point.
 //!
 //! With `H >= diag(a, c)` on the box and any point `x0` of it,
 //!
@@ -6,7 +6,7 @@
 //! G >= G(x0) + min (Gs ds + a ds²/2) + min (Gt dt + c dt²/2)
 //! ```
 //!
-//! over the steps that stay in the box: the last two minima are at most 0, and tiny where `x0` is nearly the foot. Value and gradient are
+//! over the steps that stay in the box, and so for the squared distance: the last two minima are at most 0, and tiny where `x0` is nearly the foot. Value and gradient are
 //! evaluated; their errors are paid for.
 
 use glam::{DVec3, DVec4};
@@ -41,6 +41,52 @@ pub(super) fn least_from(
         along(jet.pt, leaf.degree.1, curvature.t, *t, domain.t);
     }
     bound
+}
+
+/// The least that the squared distance from `x` can be on a box of the leaf's parameters that holds the point `found`, where `curvature` is a lower bound of
+/// its Hessian there. In a direction in which the box has no extent, curvature and slope do not matter.
+pub(super) fn nearest_from(leaf: &Leaf, x: DVec3, found: &Found, domain: Domain, curvature: Curvature) -> f64 {
+    let Found { distance: d, s, t, jet, .. } = found;
+    let offset = jet.point() - x;
+    let mut bound = d * d - square_error(leaf, *d);
+    let mut along = |derivative: DVec3, degree: usize, curvature: f64, at: f64, (from, to): (f64, f64)| {
+        let error = slope_error(leaf, *d, derivative, degree);
+        bound += convex::descent(2.0 * offset.dot(derivative), error, curvature, from - at, to - at);
+    };
+    if domain.s.0 < domain.s.1 {
+        along(jet.ps.truncate(), leaf.degree.0, curvature.s, *s, domain.s);
+    }
+    if domain.t.0 < domain.t.1 {
+        along(jet.pt.truncate(), leaf.degree.1, curvature.t, *t, domain.t);
+    }
+    bound
+}
+
+/// Error of `|S - x|²` evaluated at a point at distance `d`.
+///
+/// With `c = 3 (p + q) + 8`, `A` errs by at most `c u r W` and `w` by `c u W` (as in [`value_error`]), so `S = A / w` by `e = (2 c rho + 2) u r`, `rho` being the ratio
+/// of the weights. Hence `2 d e + e²`, and `8 u d²` for the difference and its square.
+pub(super) fn square_error(leaf: &Leaf, d: f64) -> f64 {
+    let e = point_error(leaf);
+    2.0 * d * e + e * e + 8.0 * ROUNDING * d * d
+}
+
+/// The error `e` of an evaluated point of the leaf.
+fn point_error(leaf: &Leaf) -> f64 {
+    let (p, q) = leaf.degree;
+    let c = (3 * (p + q) + 8) as f64;
+    (2.0 * c * leaf.heaviest / leaf.lightest + 2.0) * ROUNDING * leaf.radius
+}
+
+/// Error of the derivative `2 (S - x) · S_s`, `degree` being the leaf's in that direction.
+///
+/// `A_s` errs by at most `2 n c u r W` and `w_s`, which is at most `2 n W`, by `2 n c u W`; so `S_s = (A_s - w_s S) / w` errs by at most
+/// `2 n u r rho (2 c + 2 c rho + 14)`, and the product by `8 u d |S_s|` more.
+fn slope_error(leaf: &Leaf, d: f64, derivative: DVec3, degree: usize) -> f64 {
+    let (p, q) = leaf.degree;
+    let (c, rho) = ((3 * (p + q) + 8) as f64, leaf.heaviest / leaf.lightest);
+    let error = 2.0 * degree as f64 * ROUNDING * leaf.radius * rho * (2.0 * c + 2.0 * c * rho + 14.0);
+    2.0 * (d * error + derivative.length() * (point_error(leaf) + 4.0 * ROUNDING * d))
 }
 
 /// The derivative `2 (A - x w) · (A_s - x w_s) - 2 tau² w w_s` of the form, and its direction `A_s - x w_s = w S_s + w_s (S - x)`, from the point's offset
@@ -125,12 +171,36 @@ mod tests {
         [value, ds, dt]
     }
 
+    /// The squared distance and its derivatives from the exact form of `tau = 0`, `D w²`, and the exact weight.
+    fn exact_square(leaf: &Leaf, x: DVec3, s: f64, t: f64) -> [f64; 3] {
+        let (p, q) = leaf.degree;
+        let (bs, bt) = (basis(p, s), basis(q, t));
+        let number = DoubleDouble::from;
+        let mut jets = [[number(0.0); 4]; 3];
+        for (e, h) in leaf.net.iter().enumerate() {
+            let (i, j) = (e / (q + 1), e % (q + 1));
+            let shares = [bs[i][0] * bt[j][0], bs[i][1] * bt[j][0], bs[i][0] * bt[j][1]];
+            for (jet, share) in jets.iter_mut().zip(shares) {
+                (0..4).for_each(|k| jet[k] = jet[k] + share * number(h[k]));
+            }
+        }
+        let w = jets[0][3];
+        let offset = [0, 1, 2].map(|k| jets[0][k] / w - number(x[k]));
+        let dot = |a: &[DoubleDouble; 3], b: &[DoubleDouble; 3]| (0..3).fold(number(0.0), |sum, k| sum + a[k] * b[k]);
+        let slope = |jet: &[DoubleDouble; 4]| {
+            let derivative = [0, 1, 2].map(|k| (jet[k] - jets[0][k] / w * jet[3]) / w);
+            (number(2.0) * dot(&offset, &derivative)).to_f64()
+        };
+        [dot(&offset, &offset).to_f64(), slope(&jets[1]), slope(&jets[2])]
+    }
+
     /// The value that the convexity test starts from, and its gradient, each within its own bound; near the surface too,
     /// where the gradient's error does not fall with the distance.
     #[test]
     fn evaluated_values_and_gradients_err_within_their_bounds() {
         let mut random = Random(9);
         let (mut worst_value, mut worst_gradient) = (0.0_f64, 0.0_f64);
+        let (mut worst_square, mut worst_slope) = (0.0_f64, 0.0_f64);
         for round in 0..2000 {
             let degree = [(1, 0), (3, 0), (9, 0), (25, 0), (1, 1), (3, 3), (2, 5), (9, 9)][round % 8];
             let rational = round % 3 > 0;
@@ -151,6 +221,15 @@ mod tests {
             let w = jet.p.w;
             let value = (d - tau) * (d + tau) * w * w;
             worst_value = worst_value.max((value - exact[0]).abs() / value_error(&leaf, d));
+            let square = exact_square(&leaf, x, s, t);
+            worst_square = worst_square.max((d * d - square[0]).abs() / square_error(&leaf, d));
+            for (derivative, n, exact) in [(jet.ps, degree.0, square[1]), (jet.pt, degree.1, square[2])] {
+                let (offset, derivative) = (jet.point() - x, derivative.truncate());
+                let error = slope_error(&leaf, d, derivative, n);
+                if n > 0 {
+                    worst_slope = worst_slope.max((2.0 * offset.dot(derivative) - exact).abs() / error);
+                }
+            }
             let derivatives = [(jet.ps, degree.0, exact[1]), (jet.pt, degree.1, exact[2])];
             for (derivative, n, exact) in derivatives.into_iter().filter(|(_, n, _)| *n > 0) {
                 let (slope, direction) = slope(jet.point() - x, w, derivative, tau);
@@ -159,6 +238,8 @@ mod tests {
             }
         }
         assert!(worst_value < 1.0 && worst_gradient < 1.0, "{worst_value} {worst_gradient}");
+        assert!(worst_square < 1.0 && worst_slope < 1.0, "{worst_square} {worst_slope}");
+        assert!(worst_square > 1e-4 && worst_slope > 1e-4, "idle bounds: {worst_square} {worst_slope}");
         assert!(worst_value > 1e-4 && worst_gradient > 1e-4, "idle bounds: {worst_value} {worst_gradient}");
     }
 }

@@ -29,6 +29,7 @@ mod net;
 mod newton;
 mod oriented_box;
 mod piece;
+mod quotient;
 mod ranges;
 mod reply;
 mod state;

@@ -1,34 +1,44 @@
-//! What the derivatives of a leaf's form can be at most and at least, told in a few operations, before the form is made.
+//! What the squared distance to a leaf and its derivatives can be at most and at least, told in a few operations, before any form is made.
 //!
-//! The form's coefficients are affine in the query: `g = c0 - 2 x · c1 + kappa c2` with `kappa = |x|² - tau²`. So are their differences, which are the
-//! Bernstein coefficients of the form's derivatives. All coefficients of one derivative have their `(c0, c1, c2)` in a box of five dimensions, known
-//! beforehand; over that box the affine function takes values in
+//! The derivatives of `D = |S - x|²` are affine in the query:
 //!
 //! ```text
-//! a + b · y + c kappa  ±  (ra + rb · |y| + rc |kappa|)
+//! D_s = 2 S·S_s - 2 x·S_s,      D_ss = 2 S_s·S_s + 2 S·S_ss - 2 x·S_ss,      and so on.
 //! ```
 //!
-//! with the box's middle `(a, b, c)` and half its extents. The vectors are taken along the axes of the leaf's oriented box, `y` being the query
-//! there: beside the leaf `y` points mostly along the normal, and what varies along the surface costs nothing.
+//! The four numbers of such a function, its constant and its vector, lie in a box that is known beforehand, all over the leaf; over that box it takes
+//! values in
+//!
+//! ```text
+//! a + b · y  ±  (ra + rb · |y|)
+//! ```
+//!
+//! with the box's middle `(a, b)` and half its extents. The vectors are taken along the axes of the leaf's oriented box, `y` being the query
+//! there: beside the leaf `y` points mostly along the normal, and what varies along the surface costs nothing. Of a polynomial leaf the boxes are
+//! those around the Bernstein coefficients, which the form's tables hold; of a rational one they come from the boxes around its derivatives
+//! ([`quotient`](super::quotient)).
 //!
 //! # Rounding
 //!
-//! A coefficient of the form errs by at most [`rounding_bound`], a first difference by twice and a second by four times that, made of the same tables;
-//! the axes turn `c1` and `x` with errors of less than `32 u` of their product, `|c1|` of a difference being at most `4 r W²`. Twice the
-//! largest of these bounds pays for it all.
+//! Of a polynomial leaf a coefficient of the form errs by at most [`rounding_bound`], a first difference by twice and a second by four times that, made of
+//! the same tables; the axes turn vectors and query with errors of less than `32 u` of their product, `|c1|` of a difference being at most
+//! `4 r`. Twice the largest of these bounds pays for it all, and times the squared ratio of the weights for the products of a rational leaf's boxes,
+//! whose own rounding is in the boxes.
 
 use glam::{DMat3, DVec3};
+use perpend_kernel::Aabb;
 
 use super::convex::{CORRELATED, Curvature};
 use super::form::{Shape, rounding_bound};
 use super::net::Layout;
 use super::newton::Domain;
+use super::quotient::Boxes;
 
-/// An affine function of the query for each coefficient of a net: the box around all of them.
-#[derive(Debug, Clone, Copy)]
+/// An affine function of the query that varies over the leaf: the box around all of them.
+#[derive(Debug, Clone, Copy, Default)]
 struct Affine {
-    middle: [f64; 5],
-    extent: [f64; 5],
+    middle: [f64; 4],
+    extent: [f64; 4],
 }
 
 impl Affine {
@@ -36,7 +46,7 @@ impl Affine {
     #[inline(always)]
     fn at(&self, view: &View) -> (f64, f64) {
         let (mut middle, mut extent) = (self.middle[0], self.extent[0]);
-        for k in 0..4 {
+        for k in 0..3 {
             middle += self.middle[k + 1] * view.factors[k];
             extent += self.extent[k + 1] * view.factors[k].abs();
         }
@@ -45,17 +55,18 @@ impl Affine {
 
     /// Around the `factor`-fold differences that `difference` takes of each table at every index.
     fn around(
-        tables: &[&[f64]; 5],
+        tables: [&[f64]; 4],
         factor: usize,
         indices: impl Iterator<Item = usize> + Clone,
         difference: impl Fn(&[f64], usize) -> f64,
     ) -> Self {
-        let mut affine = Self { middle: [0.0; 5], extent: [0.0; 5] };
-        for (k, table) in tables.iter().enumerate().filter(|(_, table)| !table.is_empty()) {
-            let (low, high) = indices.clone().map(|at| difference(table, at)).fold(
-                (f64::INFINITY, f64::NEG_INFINITY),
-                |(low, high), x| (low.min(x), high.max(x)),
-            );
+        let mut affine = Self::default();
+        for (k, table) in tables.into_iter().enumerate() {
+            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+            for at in indices.clone() {
+                let value = difference(table, at);
+                (low, high) = (if value < low { value } else { low }, if value > high { value } else { high });
+            }
             if low <= high {
                 affine.middle[k] = factor as f64 * 0.5 * (low + high);
                 affine.extent[k] = factor as f64 * 0.5 * (high - low);
@@ -63,18 +74,27 @@ impl Affine {
         }
         affine
     }
+
+    /// The function whose constant lies in an interval and whose vector lies in a box.
+    fn of(constant: (f64, f64), vector: &Aabb) -> Self {
+        let (middle, extent) = (0.5 * (vector.min + vector.max), 0.5 * (vector.max - vector.min));
+        Self {
+            middle: [0.5 * (constant.0 + constant.1), middle.x, middle.y, middle.z],
+            extent: [0.5 * (constant.1 - constant.0), extent.x, extent.y, extent.z],
+        }
+    }
 }
 
 /// A query as the ranges see it.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct View {
-    /// `-2 y` and `kappa`.
-    factors: [f64; 4],
+    /// `-2 y`.
+    factors: [f64; 3],
     /// What pays for the rounding of a difference.
     rounding: f64,
 }
 
-/// Ranges of the first and second derivatives of a leaf's form.
+/// Ranges of the first and second derivatives of the squared distance to a leaf.
 #[derive(Debug)]
 pub(super) struct Ranges {
     s: Affine,
@@ -85,51 +105,42 @@ pub(super) struct Ranges {
     factors: [f64; 5],
     degree: (usize, usize),
     radius: f64,
-    heaviest: f64,
+    /// What the rounding of a rational leaf is multiplied with.
+    weights: f64,
 }
 
 impl Ranges {
-    /// Of a leaf whose tables are `tables`, along the axes that are the rows of `axes`.
-    pub(super) fn new(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, radius: f64, heaviest: f64) -> Self {
-        let layout = leaf.layout();
-        let (Layout { m, n }, len) = (layout, layout.len());
-        let table = |k: usize| tables.get(k * len..(k + 1) * len).unwrap_or_default();
-        let turned: Vec<DVec3> =
-            (0..len).map(|at| *axes * DVec3::new(table(1)[at], table(2)[at], table(3)[at])).collect();
-        let along = |axis: usize| turned.iter().map(|c1| c1[axis]).collect::<Vec<f64>>();
-        let (cx, cy, cz) = (along(0), along(1), along(2));
-        let tables = [table(0), &cx, &cy, &cz, table(4)];
-        // all coefficients that have so many others after them in s and in t
-        let inside = |s: usize, t: usize| {
-            (0..(m + 1).saturating_sub(s)).flat_map(move |i| (0..(n + 1).saturating_sub(t)).map(move |j| layout.at(i, j)))
-        };
-        let (step_s, step_t) = (layout.at(1, 0), layout.at(0, 1));
-        let first = |step: usize| move |g: &[f64], at: usize| g[at + step] - g[at];
-        let second = |step: usize| move |g: &[f64], at: usize| g[at] - 2.0 * g[at + step] + g[at + 2 * step];
-        let mixed = |g: &[f64], at: usize| (g[at] - g[at + step_t]) - (g[at + step_s] - g[at + step_s + step_t]);
+    /// Of a leaf whose tables are `tables`, along the axes that are the rows of `axes`; its control points lie within `radius` of its origin and its
+    /// weights between two bounds.
+    pub(super) fn new(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
+        let Layout { m, n } = leaf.layout();
         let factors = [m, n, m * (m - 1), m * n, n * n.saturating_sub(1)];
+        let [s, t, ss, st, tt] = if leaf.rational {
+            rational(&Boxes::around(leaf, axes, radius, weights))
+        } else {
+            polynomial(leaf, tables, axes, factors)
+        };
         Self {
-            s: Affine::around(&tables, factors[0], inside(1, 0), first(step_s)),
-            t: Affine::around(&tables, factors[1], inside(0, 1), first(step_t)),
-            ss: Affine::around(&tables, factors[2], inside(2, 0), second(step_s)),
-            st: Affine::around(&tables, factors[3], inside(1, 1), mixed),
-            tt: Affine::around(&tables, factors[4], inside(0, 2), second(step_t)),
+            s,
+            t,
+            ss,
+            st,
+            tt,
             factors: factors.map(|factor| factor as f64),
             degree: leaf.degree,
             radius,
-            heaviest,
+            weights: (weights.1 / weights.0).powi(2),
         }
     }
 
-    /// The query at `x` from the leaf's origin and at `y` along its axes, with the distance `tau` that the form is made with.
+    /// The query at `x` from the leaf's origin and at `y` along its axes.
     #[inline(always)]
-    pub(super) fn view(&self, x: DVec3, y: DVec3, tau: f64) -> View {
-        let square = x.length_squared();
-        let rounding = 8.0 * rounding_bound(self.degree, square.sqrt(), self.radius, tau, self.heaviest);
-        View { factors: [-2.0 * y.x, -2.0 * y.y, -2.0 * y.z, square - tau * tau], rounding }
+    pub(super) fn view(&self, x: DVec3, y: DVec3) -> View {
+        let rounding = 8.0 * rounding_bound(self.degree, x.length(), self.radius, 0.0, 1.0) * self.weights;
+        View { factors: (-2.0 * y).to_array(), rounding }
     }
 
-    /// The edge or corner of the leaf on which the form is least, as far as the signs of its slopes tell; else all of it.
+    /// The edge or corner of the leaf that is nearest, as far as the signs of the slopes tell; else all of it.
     #[inline(always)]
     pub(super) fn lowest(&self, view: &View) -> Domain {
         let toward = |slope: &Affine, factor: f64| {
@@ -147,8 +158,8 @@ impl Ranges {
         Domain { s: toward(&self.s, self.factors[0]), t }
     }
 
-    /// A lower bound of the Hessian in the directions in which the box has an extent, if the ranges show the form convex there: with
-    /// `rho² = max Gst² / (min Gss min Gtt) < 1`, `H >= (1 - rho) diag(min Gss, min Gtt)`.
+    /// A lower bound of the Hessian in the directions in which the box has an extent, if the ranges show `D` convex there: with
+    /// `rho² = max D_st² / (min D_ss min D_tt) < 1`, `H >= (1 - rho) diag(min D_ss, min D_tt)`.
     #[inline(always)]
     pub(super) fn curvature(&self, view: &View, domain: &Domain) -> Option<Curvature> {
         let least = |curvature: &Affine, factor: f64| {
@@ -171,4 +182,64 @@ impl Ranges {
         let rho = mixed / (s * t).sqrt();
         (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
     }
+}
+
+/// From the tables of a polynomial leaf's form.
+fn polynomial(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, factors: [usize; 5]) -> [Affine; 5] {
+    let layout = leaf.layout();
+    let (Layout { m, n }, len) = (layout, layout.len());
+    let table = |k: usize| &tables[k * len..(k + 1) * len];
+    let mut turned = vec![0.0; 3 * len];
+    for at in 0..len {
+        let c1 = *axes * DVec3::new(table(1)[at], table(2)[at], table(3)[at]);
+        (turned[at], turned[len + at], turned[2 * len + at]) = (c1.x, c1.y, c1.z);
+    }
+    let tables = [table(0), &turned[..len], &turned[len..2 * len], &turned[2 * len..]];
+    // all coefficients that have so many others after them in s and in t
+    let inside = |s: usize, t: usize| {
+        (0..(m + 1).saturating_sub(s)).flat_map(move |i| (0..(n + 1).saturating_sub(t)).map(move |j| layout.at(i, j)))
+    };
+    let (step_s, step_t) = (layout.at(1, 0), layout.at(0, 1));
+    let first = |step: usize| move |g: &[f64], at: usize| g[at + step] - g[at];
+    let second = |step: usize| move |g: &[f64], at: usize| g[at] - 2.0 * g[at + step] + g[at + 2 * step];
+    let mixed = |g: &[f64], at: usize| (g[at] - g[at + step_t]) - (g[at + step_s] - g[at + step_s + step_t]);
+    [
+        Affine::around(tables, factors[0], inside(1, 0), first(step_s)),
+        Affine::around(tables, factors[1], inside(0, 1), first(step_t)),
+        Affine::around(tables, factors[2], inside(2, 0), second(step_s)),
+        Affine::around(tables, factors[3], inside(1, 1), mixed),
+        Affine::around(tables, factors[4], inside(0, 2), second(step_t)),
+    ]
+}
+
+/// From the boxes around the derivatives of a rational leaf.
+fn rational(boxes: &Boxes) -> [Affine; 5] {
+    let Boxes { p, ps, pt, pss, pst, ptt } = boxes;
+    let twice_sum = |terms: &[(f64, f64)]| terms.iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + 2.0 * c, b + 2.0 * d));
+    [
+        Affine::of(twice_sum(&[dot(p, ps)]), ps),
+        Affine::of(twice_sum(&[dot(p, pt)]), pt),
+        Affine::of(twice_sum(&[square(ps), dot(p, pss)]), pss),
+        Affine::of(twice_sum(&[dot(ps, pt), dot(p, pst)]), pst),
+        Affine::of(twice_sum(&[square(pt), dot(p, ptt)]), ptt),
+    ]
+}
+
+/// The interval of the scalar product of vectors in two boxes.
+fn dot(a: &Aabb, b: &Aabb) -> (f64, f64) {
+    (0..3).fold((0.0, 0.0), |(low, high), k| {
+        let products = [a.min[k] * b.min[k], a.min[k] * b.max[k], a.max[k] * b.min[k], a.max[k] * b.max[k]];
+        let least = products.into_iter().fold(f64::INFINITY, f64::min);
+        let most = products.into_iter().fold(f64::NEG_INFINITY, f64::max);
+        (low + least, high + most)
+    })
+}
+
+/// The interval of the squared length of the vectors in a box.
+fn square(a: &Aabb) -> (f64, f64) {
+    (0..3).fold((0.0, 0.0), |(low, high), k| {
+        let (x, y) = (a.min[k] * a.min[k], a.max[k] * a.max[k]);
+        let least = if a.min[k] <= 0.0 && a.max[k] >= 0.0 { 0.0 } else { x.min(y) };
+        (low + least, high + x.max(y))
+    })
 }

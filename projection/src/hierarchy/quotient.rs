@@ -1,0 +1,209 @@
+//! Boxes around the derivatives of a rational piece.
+//!
+//! With `S = A / w` the quotient rule gives
+//!
+//! ```text
+//! S_s  = V / w²,                        V = A_s w - A w_s,      S_t likewise with U = A_t w - A w_t
+//! S_ss = (V_s w - 2 V w_s) / w³,        S_st = (V_t w - 2 V w_t) / w³,      S_tt = (U_t w - 2 U w_t) / w³
+//! ```
+//!
+//! Numerators and denominators are Bernstein polynomials; raised to one degree, the quotient is a convex combination of the quotients of their
+//! coefficients, as all weights are positive. So it lies in the box around these.
+//!
+//! # Rounding
+//!
+//! A coefficient of a product is a convex combination of at most `N = (p + 1)(q + 1)` products of coefficients: with the binomials it errs by at
+//! most `(N + 10) u` of the largest of these. With `|A| <= r W`, `w <= W`, a derivative being at most `2 n` times its polynomial and `n` the greater
+//! degree: `|V| <= 4 n r W²` errs by `6 n (N + 10) u r W²`, the numerators of the second derivatives are at most `24 n² r W³` and err by
+//! `100 n² (N + 10) u r W³`. Divided by the least denominator, with `rho` the ratio of the weights, [`margin`] is twice that.
+
+use glam::{DMat3, DVec3, DVec4};
+use perpend_kernel::{Aabb, binomial};
+
+use super::ROUNDING;
+use super::form::Shape;
+
+/// Boxes around a rational piece and its derivatives, along given axes.
+#[derive(Debug)]
+pub(super) struct Boxes {
+    pub p: Aabb,
+    pub ps: Aabb,
+    pub pt: Aabb,
+    pub pss: Aabb,
+    pub pst: Aabb,
+    pub ptt: Aabb,
+}
+
+impl Boxes {
+    /// Around a piece whose control points lie within `radius` of the origin and whose weights are at most `heaviest` and at least `lightest`.
+    pub(super) fn around(leaf: Shape<'_>, axes: &DMat3, radius: f64, (lightest, heaviest): (f64, f64)) -> Self {
+        let (p, q) = leaf.degree;
+        let turned = |h: &DVec4| (*axes * h.truncate()).extend(h.w);
+        let net = Polynomial { degree: leaf.degree, coefficients: leaf.net.iter().map(turned).collect() };
+        let [net_s, net_t] = [net.derivative_s(), net.derivative_t()];
+        let w2 = net.times(&net);
+        let w3 = w2.times(&net);
+        let (v, u) = (net.numerator(&net_s, 1.0), net.numerator(&net_t, 1.0));
+        let ss = net.second(&v, &v.derivative_s(), &net_s);
+        let st = net.second(&v, &v.derivative_t(), &net_t);
+        let tt = net.second(&u, &u.derivative_t(), &net_t);
+        let (n, count) = (p.max(q) as f64, ((p + 1) * (q + 1)) as f64);
+        let margin = |power: i32| {
+            200.0 * n * n * (count + 10.0) * ROUNDING * radius * (heaviest / lightest).powi(power)
+        };
+        Self {
+            p: wider(net.quotients(&net), margin(1)),
+            ps: wider(v.quotients(&w2), margin(2)),
+            pt: wider(u.quotients(&w2), margin(2)),
+            pss: wider(ss.quotients(&w3), margin(3)),
+            pst: wider(st.quotients(&w3), margin(3)),
+            ptt: wider(tt.quotients(&w3), margin(3)),
+        }
+    }
+}
+
+fn wider(bounds: Aabb, margin: f64) -> Aabb {
+    Aabb { min: bounds.min - DVec3::splat(margin), max: bounds.max + DVec3::splat(margin) }
+}
+
+/// A polynomial in Bernstein form: a vector and, as fourth coordinate, a weight.
+struct Polynomial {
+    degree: (usize, usize),
+    coefficients: Vec<DVec4>,
+}
+
+impl Polynomial {
+    fn zero(degree: (usize, usize)) -> Self {
+        Self { degree, coefficients: vec![DVec4::ZERO; (degree.0 + 1) * (degree.1 + 1)] }
+    }
+
+    fn at(&self, i: usize, j: usize) -> DVec4 {
+        self.coefficients[i * (self.degree.1 + 1) + j]
+    }
+
+    /// The sum over all pairs of coefficients, of `product` of them; each with its share of the product's coefficient.
+    fn product(&self, other: &Self, product: impl Fn(DVec4, DVec4) -> DVec4) -> Self {
+        let ((p, q), (m, n)) = (self.degree, other.degree);
+        let mut result = Self::zero((p + m, q + n));
+        for i in 0..=p {
+            for k in 0..=m {
+                let down = binomial(p, i) * binomial(m, k) / binomial(p + m, i + k);
+                for j in 0..=q {
+                    for l in 0..=n {
+                        let share = down * binomial(q, j) * binomial(n, l) / binomial(q + n, j + l);
+                        let at = (i + k) * (q + n + 1) + j + l;
+                        result.coefficients[at] += share * product(self.at(i, j), other.at(k, l));
+                    }
+                }
+            }
+        }
+        result
+    }
+
+    /// All four coordinates times the other's weight.
+    fn times(&self, other: &Self) -> Self {
+        self.product(other, |a, b| a * b.w)
+    }
+
+    fn minus(mut self, other: &Self, factor: f64) -> Self {
+        self.coefficients.iter_mut().zip(&other.coefficients).for_each(|(a, b)| *a -= factor * *b);
+        self
+    }
+
+    fn derivative_s(&self) -> Self {
+        let (p, q) = self.degree;
+        let mut result = Self::zero((p.saturating_sub(1), q));
+        for i in 0..p {
+            for j in 0..=q {
+                result.coefficients[i * (q + 1) + j] = p as f64 * (self.at(i + 1, j) - self.at(i, j));
+            }
+        }
+        result
+    }
+
+    fn derivative_t(&self) -> Self {
+        let (p, q) = self.degree;
+        let mut result = Self::zero((p, q.saturating_sub(1)));
+        for i in 0..=p {
+            for j in 0..q {
+                result.coefficients[i * q.max(1) + j] = q as f64 * (self.at(i, j + 1) - self.at(i, j));
+            }
+        }
+        result
+    }
+
+    /// `self' w - factor self w'` with the weight of `self` and its derivative `self'`.
+    fn numerator(&self, derivative: &Self, factor: f64) -> Self {
+        derivative.times(self).minus(&self.times(derivative), factor)
+    }
+
+    /// `v' w - 2 v w'` with the weight of `self`, whose derivative is `derivative`, and the derivative `v'` of `v` in the same direction.
+    fn second(&self, v: &Self, v_derivative: &Self, derivative: &Self) -> Self {
+        v_derivative.times(self).minus(&v.times(derivative), 2.0)
+    }
+
+    /// The same polynomial in a form of a higher degree.
+    fn raised(&self, degree: (usize, usize)) -> Self {
+        let by = (degree.0 - self.degree.0, degree.1 - self.degree.1);
+        let one = Self { degree: by, coefficients: vec![DVec4::W; (by.0 + 1) * (by.1 + 1)] };
+        self.times(&one)
+    }
+
+    /// The box around the quotients of the vector coefficients and a denominator's weights.
+    fn quotients(&self, denominator: &Self) -> Aabb {
+        let raised = self.raised(denominator.degree);
+        let quotients = raised.coefficients.iter().zip(&denominator.coefficients);
+        Aabb::around(quotients.map(|(a, w)| a.truncate() / w.w))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::double_double::Random;
+    use super::super::jet::Jet;
+    use super::*;
+    use fearless_simd::Level;
+
+    /// Every derivative of random rational pieces lies in its box, and the boxes of a piece that hardly bends are not much larger than what they hold.
+    #[test]
+    fn derivatives_lie_in_their_boxes() {
+        let mut random = Random(21);
+        for round in 0..200 {
+            let degree = [(1, 0), (2, 0), (5, 0), (1, 1), (2, 1), (1, 2), (3, 2), (2, 5)][round % 8];
+            let count = (degree.0 + 1) * (degree.1 + 1);
+            let net: Vec<DVec4> = (0..count)
+                .map(|_| {
+                    let weight = 10.0_f64.powf(random.between(-0.5, 0.0));
+                    (random.point() * weight).extend(weight)
+                })
+                .collect();
+            let weights = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+            let radius = net.iter().map(|h| (h.truncate() / h.w).length()).fold(0.0, f64::max);
+            let leaf = Shape { degree, rational: true, net: &net };
+            let boxes = Boxes::around(leaf, &DMat3::IDENTITY, radius, weights);
+            for _ in 0..200 {
+                let (s, t) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+                let jet = Jet::at(Level::new(), &net, degree, true, s, t);
+                let held = [
+                    (jet.p, boxes.p),
+                    (jet.ps, boxes.ps),
+                    (jet.pt, boxes.pt),
+                    (jet.pss, boxes.pss),
+                    (jet.pst, boxes.pst),
+                    (jet.ptt, boxes.ptt),
+                ];
+                for (k, (value, bounds)) in held.into_iter().enumerate().filter(|(k, _)| degree.1 > 0 || [0, 1, 3].contains(k)) {
+                    let value = value.truncate();
+                    let slack = DVec3::splat(1e-11 * (1.0 + value.abs().max_element()));
+                    let wider = Aabb { min: bounds.min - slack, max: bounds.max + slack };
+                    assert!(wider.contains(value), "{degree:?} derivative {k}: {value} outside {bounds:?}");
+                }
+            }
+        }
+        // a straight line with equal weights: the boxes are the derivatives themselves
+        let net: Vec<DVec4> = (0..3).map(|i| DVec4::new(f64::from(i), 0.0, 0.0, 1.0)).collect();
+        let leaf = Shape { degree: (2, 0), rational: true, net: &net };
+        let boxes = Boxes::around(leaf, &DMat3::IDENTITY, 2.0, (1.0, 1.0));
+        assert!((boxes.ps.max - DVec3::new(2.0, 0.0, 0.0)).length() < 1e-9 && boxes.pss.diagonal() < 1e-9);
+    }
+}
