@@ -37,7 +37,8 @@ impl Contender for Parry {
         let target = self.chord_error * size;
         Ok(Some(match &*case.definition {
             Definition::NurbsCurve(curve) => {
-                let parameters = divided(curve.knots(), target, |u| vec![curve.point(u)]);
+                let counts = counts(curve.knots(), target, |u| vec![curve.point(u)]);
+                let parameters = divided(curve.knots(), &counts);
                 let chord_error = curve_error(curve, &parameters) / size;
                 let start = Instant::now();
                 let points = parameters.iter().map(|u| vector(curve.point(*u))).collect();
@@ -84,24 +85,27 @@ fn parts(from: f64, to: f64, count: usize) -> impl Iterator<Item = f64> {
     (0..count).map(move |i| from + (to - from) * i as f64 / count as f64)
 }
 
-/// Parameters that divide each span equally, as rarely as chords stay within `target` of all points that `across` gives for a parameter.
-fn divided(knots: &KnotVector, target: f64, across: impl Fn(f64) -> Vec<DVec3>) -> Vec<f64> {
-    let mut parameters = Vec::new();
-    for span in knots.spans() {
+/// Into how many equal parts each span is divided, as few as keep chords within `target` of all points that `across` gives for a parameter.
+fn counts(knots: &KnotVector, target: f64, across: impl Fn(f64) -> Vec<DVec3>) -> Vec<usize> {
+    let count = |span: perpend::kernel::Span| {
         let mut count = 1;
         loop {
             let ends: Vec<f64> = parts(span.start, span.end, count).chain([span.end]).collect();
             let worst = ends.windows(2).map(|part| chord_error(part[0], part[1], &across)).fold(0.0, f64::max);
             if worst <= target {
-                parameters.extend(&ends[..count]);
-                break;
+                return count;
             }
             let wanted = count as f64 * (worst / target).sqrt();
             count = (count + 1).max((0.98 * wanted) as usize);
         }
-    }
-    parameters.push(knots.domain().1);
-    parameters
+    };
+    knots.spans().map(count).collect()
+}
+
+/// The parameters that divide each span into so many equal parts.
+fn divided(knots: &KnotVector, counts: &[usize]) -> Vec<f64> {
+    let spans = knots.spans().zip(counts);
+    spans.flat_map(|(span, count)| parts(span.start, span.end, *count)).chain([knots.domain().1]).collect()
 }
 
 /// How far points between two parameters are from their chord, on the worst of the lines that `across` gives.
@@ -130,20 +134,22 @@ fn grid(surface: &NurbsSurface, target: f64) -> (Vec<f64>, Vec<f64>, f64) {
         lines.push(surface.domain(direction).1);
         lines
     };
-    let (along_u, along_v) = (lines(Direction::U), lines(Direction::V));
-    let mut share = 0.5;
+    let [along_u, along_v] = [Direction::U, Direction::V].map(lines);
+    let knots = [Direction::U, Direction::V].map(|direction| surface.knots(direction));
+    // what both directions leave adds up
+    let mut in_u = counts(knots[0], 0.5 * target, |u| along_v.iter().map(|v| surface.point(u, *v)).collect());
+    let mut in_v = counts(knots[1], 0.5 * target, |v| along_u.iter().map(|u| surface.point(*u, v)).collect());
     loop {
-        let u = divided(surface.knots(Direction::U), share * target, |u| {
-            along_v.iter().map(|v| surface.point(u, *v)).collect()
-        });
-        let v = divided(surface.knots(Direction::V), share * target, |v| {
-            along_u.iter().map(|u| surface.point(*u, v)).collect()
-        });
+        let (u, v) = (divided(knots[0], &in_u), divided(knots[1], &in_v));
         let measured = mesh_error(surface, &u, &v);
         if measured <= target {
             return (u, v, measured);
         }
-        share *= 0.9 * target / measured;
+        // a twist is left, which no chord along u or v sees: it falls with both sides of a cell
+        let factor = 1.02 * (measured / target).sqrt();
+        for count in in_u.iter_mut().chain(&mut in_v) {
+            *count = (*count as f64 * factor).ceil() as usize;
+        }
     }
 }
 

@@ -39,7 +39,7 @@ impl Contender for Truck {
                         Box::new(OnCurve { curve: BSplineCurve::try_new(knots, points)?, domain })
                     }
                     Some(_) => {
-                        let points = curve.homogeneous_points().iter().map(|p| Vector4::new(p.x, p.y, p.z, p.w));
+                        let points = curve.homogeneous_points().into_iter().map(|p| Vector4::new(p.x, p.y, p.z, p.w));
                         let curve = NurbsCurve::new(BSplineCurve::try_new(knots, points.collect())?);
                         Box::new(OnCurve { curve, domain })
                     }
