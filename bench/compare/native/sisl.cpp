@@ -8,8 +8,8 @@
 
 namespace {
 
-/// The geometric resolution that is asked for, as a share of the entity's size.
-constexpr double kResolution = 1e-9;
+/// The geometric resolution that is asked for, as a share of the entity's size: of 1e-6 to 1e-12 the one with the most right answers, at no cost in time.
+constexpr double kResolution = 1e-11;
 
 /// Coefficients as SISL wants them: the first index runs fastest, rational ones are weighted.
 std::vector<double> coefficients(const Entity& entity) {

@@ -67,7 +67,7 @@ impl Outcome<'_> {
         let slowest = all.iter().max_by(|a, b| a.median().total_cmp(&b.median())).expect("a row has an entity");
         let ratio = |measured: &&Measured| {
             let beside = reference.iter().find(|other| other.case == measured.case)?;
-            Some(measured.median() / beside.median())
+            Some(measured.fastest() / beside.fastest())
         };
         let ratios: Option<Vec<f64>> = all.iter().map(ratio).collect();
         let heaps: Option<Vec<f64>> = all.iter().map(|measured| Some(measured.heap? as f64 / 1024.0)).collect();
@@ -83,7 +83,7 @@ impl Outcome<'_> {
             judgement.rows.to_string(),
             all.iter().map(|measured| measured.timed).sum::<usize>().to_string(),
             figure(mean(&Measured::median)),
-            format!("{} to {}", figure(mean(&|m| m.times[0])), figure(mean(&|m| m.times[m.times.len() - 1]))),
+            format!("{} to {}", figure(mean(&Measured::fastest)), figure(mean(&Measured::slowest))),
             ratios.map_or(absent(), |ratios| figure(geometric_mean(ratios.into_iter()))),
             format!("{} ({})", figure(slowest.median()), self.cases[slowest.case].name),
             figure(geometric_mean(setups.iter().copied())),
@@ -132,6 +132,7 @@ impl Outcome<'_> {
             let [recognised, hierarchy, bare, edges] =
                 measured.each_ref().map(|all| all.iter().filter(of_kind).copied().collect::<Vec<_>>());
             let mean = |all: &[&Measured]| geometric_mean(all.iter().map(|measured| measured.median()));
+            let fastest = |all: &[&Measured]| geometric_mean(all.iter().map(|measured| measured.fastest()));
             let right = |all: &[&Measured]| {
                 let sum = all.iter().fold(Judgement::default(), |sum, measured| sum.and(measured.judgement));
                 percentage(sum.right, sum.rows)
@@ -142,10 +143,10 @@ impl Outcome<'_> {
                 figure(mean(&hierarchy)),
                 figure(mean(&bare)),
                 right(&bare),
-                figure(mean(&bare) / mean(&recognised)),
+                figure(fastest(&bare) / fastest(&recognised)),
                 figure(mean(&edges)),
                 right(&edges),
-                figure(mean(&edges) / mean(&recognised)),
+                figure(fastest(&edges) / fastest(&recognised)),
             ]);
         }
         Some(table)

@@ -42,6 +42,16 @@ impl Measured {
         let (n, middle) = (self.times.len(), self.times.len() / 2);
         if n % 2 == 1 { self.times[middle] } else { 0.5 * (self.times[middle - 1] + self.times[middle]) }
     }
+
+    /// The fastest pass: other programs only ever add time, so ratios are taken of these.
+    pub(crate) fn fastest(&self) -> f64 {
+        self.times[0]
+    }
+
+    /// The slowest pass.
+    pub(crate) fn slowest(&self) -> f64 {
+        self.times[self.times.len() - 1]
+    }
 }
 
 /// A contender on the entity, between its judgement and its passes.

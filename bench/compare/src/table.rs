@@ -44,9 +44,10 @@ impl Table {
         let rule = match style {
             Style::Plain => "-".repeat(widths.iter().sum::<usize>() + 2 * (widths.len() - 1)) + "\n",
             Style::Markdown => {
-                let cells = widths.iter().enumerate().map(|(column, width)| {
-                    if column == 0 { "-".repeat(*width) } else { "-".repeat(width - 1) + ":" }
-                });
+                let cells = widths
+                    .iter()
+                    .enumerate()
+                    .map(|(column, width)| if column == 0 { "-".repeat(*width) } else { "-".repeat(width - 1) + ":" });
                 format!("| {} |\n", cells.collect::<Vec<_>>().join(" | "))
             }
         };

@@ -8,8 +8,8 @@ mod perpend;
 mod sisl;
 mod truck;
 
-pub(crate) use perpend::{RECOGNISED, REFERENCE};
 pub(crate) use occt::{ELEMENTARY, ELEMENTARY_BARE};
+pub(crate) use perpend::{RECOGNISED, REFERENCE};
 
 use crate::contender::Contender;
 
@@ -29,7 +29,7 @@ impl Roster {
         present.extend(curvo::contenders());
         present.extend(parry::contenders());
         let mut absent = Vec::new();
-        for (name, native) in [("OpenCASCADE", occt::contenders()), ("SISL", sisl::contenders())] {
+        for (name, native) in [("OCCT (OpenCASCADE)", occt::contenders()), ("SISL", sisl::contenders())] {
             match native {
                 Ok(contenders) => present.extend(contenders),
                 Err(reason) => absent.push((name.to_owned(), reason)),

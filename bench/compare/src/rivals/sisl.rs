@@ -27,10 +27,8 @@ struct Sisl {
 
 pub(super) fn contenders() -> Result<Vec<Box<dyn Contender>>, String> {
     let program = LIBRARY.compile()?;
-    let rows = [
-        ("SISL s1953/s1954 (global)", "global", Pace::Thinned),
-        ("SISL s1957/s1958 (local)", "local", Pace::All),
-    ];
+    let rows =
+        [("SISL s1953/s1954 (global)", "global", Pace::Thinned), ("SISL s1957/s1958 (local)", "local", Pace::All)];
     let contender =
         |(name, method, pace)| Box::new(Sisl { program: program.clone(), name, method, pace }) as Box<dyn Contender>;
     Ok(rows.map(contender).into())
