@@ -51,8 +51,10 @@ impl Judgement {
             let scale = reach + row.point.abs().max_element();
             let noise = 16.0 * f64::EPSILON * scale + 1e-13 * row.distance;
             let there = answer.parameter.map(|at| row.point.distance(point(definition, at)));
-            let error = [Some(answer.distance), there].into_iter().flatten();
-            let error = error.map(|distance| (distance - row.distance).abs()).fold(0.0, f64::max);
+            let distances = [Some(answer.distance), there].into_iter().flatten();
+            let errors = distances.map(|distance| (distance - row.distance).abs());
+            // what is not a number is as wrong as can be
+            let error = errors.map(|e| if e.is_nan() { f64::INFINITY } else { e }).fold(0.0, f64::max);
             judgement.right += usize::from(error <= RIGHT * size + noise);
             judgement.worst = judgement.worst.max(error / size);
             if let Some(lower) = answer.lower_bound {

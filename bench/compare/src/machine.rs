@@ -23,23 +23,23 @@ pub(crate) fn processor() -> String {
     format!("{model}, {threads} threads")
 }
 
-/// What a program prints, on one line; "unknown" where it cannot be run.
-fn said(program: &str, arguments: &[&str]) -> String {
-    let output = Command::new(program).args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output();
-    let text = output.ok().filter(|output| output.status.success()).map(|output| output.stdout);
-    text.map_or("unknown".to_owned(), |text| String::from_utf8_lossy(&text).trim().replace('\n', " "))
+/// What a program prints, on one line; none where it cannot be run.
+fn said(program: &str, arguments: &[&str]) -> Option<String> {
+    let output = Command::new(program).args(arguments).current_dir(env!("CARGO_MANIFEST_DIR")).output().ok()?;
+    output.status.success().then(|| String::from_utf8_lossy(&output.stdout).trim().replace('\n', " "))
 }
 
 /// Today.
 pub(crate) fn date() -> String {
-    said("date", &["+%Y-%m-%d"])
+    said("date", &["+%Y-%m-%d"]).unwrap_or_else(|| "unknown date".to_owned())
 }
 
 /// The commit of the sources, and whether they were changed since.
 pub(crate) fn commit() -> String {
+    let commit = said("git", &["rev-parse", "--short", "HEAD"]);
     let changed = said("git", &["status", "--porcelain", "--untracked-files=no"]);
-    let mark = if changed.is_empty() { "" } else { ", changed since" };
-    format!("{}{mark}", said("git", &["rev-parse", "--short", "HEAD"]))
+    let mark = if changed.is_none_or(|changed| changed.is_empty()) { "" } else { ", changed since" };
+    commit.map_or_else(|| "unknown commit".to_owned(), |commit| format!("commit {commit}{mark}"))
 }
 
 /// Microseconds of one evaluation of a bicubic surface of 40×40 control points with all first and second derivatives, at scattered parameters.

@@ -80,7 +80,7 @@ fn compare(options: &Options) -> Result<(), Failure> {
         .collect();
     let absent: Vec<(String, String)> = absent.into_iter().filter(|(name, _)| wanted(name)).collect();
 
-    println!("{}; {}; commit {}", machine::processor(), machine::date(), machine::commit());
+    println!("{}; {}; {}", machine::processor(), machine::date(), machine::commit());
     println!("{} passes, medians; slow contenders: every {} row", options.passes, ordinal(options.rows));
     let before = machine::evaluation()?;
     println!("one evaluation of a bicubic surface with all second derivatives: {before:.3} µs before the run");

@@ -42,7 +42,7 @@ impl Library {
         let program = work_folder().map_err(|error| error.to_string())?.join(self.source).with_extension("run");
         let mut compiler = Command::new("c++");
         compiler.args(["-std=c++17", "-O2", "-w", "-I", folder]).arg("-o").args([&program, &source]);
-        let said = compiler.args(self.links).output().map_err(|error| format!("c++: {error}: {remedy}"))?;
+        let said = compiler.args(self.links).output().map_err(|error| format!("no c++ ({error}): {remedy}"))?;
         if said.status.success() {
             return Ok(program);
         }
