@@ -64,7 +64,7 @@ impl Outcome<'_> {
     fn row(&self, name: &str, all: &[&Measured], reference: &[&Measured]) -> Vec<String> {
         let mean = |of: &dyn Fn(&Measured) -> f64| geometric_mean(all.iter().map(|measured| of(measured)));
         let judgement = all.iter().fold(Judgement::default(), |sum, measured| sum.and(measured.judgement));
-        let slowest = all.iter().max_by(|a, b| a.median().total_cmp(&b.median())).expect("a row has an entity");
+        let slowest = all.iter().max_by(|a, b| a.fastest().total_cmp(&b.fastest())).expect("a row has an entity");
         let ratio = |measured: &&Measured| {
             let beside = reference.iter().find(|other| other.case == measured.case)?;
             Some(measured.fastest() / beside.fastest())
@@ -85,7 +85,7 @@ impl Outcome<'_> {
             figure(mean(&Measured::median)),
             format!("{} to {}", figure(mean(&Measured::fastest)), figure(mean(&Measured::slowest))),
             ratios.map_or(absent(), |ratios| figure(geometric_mean(ratios.into_iter()))),
-            format!("{} ({})", figure(slowest.median()), self.cases[slowest.case].name),
+            format!("{} ({})", figure(slowest.fastest()), self.cases[slowest.case].name),
             figure(geometric_mean(setups.iter().copied())),
             figure(largest(&setups)),
             heaps.as_ref().map_or(absent(), |heaps| figure(geometric_mean(heaps.iter().copied()))),

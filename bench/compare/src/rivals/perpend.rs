@@ -56,6 +56,7 @@ pub(super) fn contenders() -> Vec<Box<dyn Contender>> {
         rows.push(Box::new(Perpend { method: None, is_learned: true, usage }));
         rows.push(Box::new(Perpend { method: Some(Method::Hierarchy), is_learned: false, usage }));
     }
+    rows.push(Box::new(Perpend { method: None, is_learned: false, usage: Use::Cold }));
     rows
 }
 
