@@ -1,5 +1,6 @@
 //! Benchmarks of perpend: questions that an application would ask, with the worst error seen beside every time.
 
+pub mod callgrind;
 mod case;
 mod corpus;
 mod judgement;
