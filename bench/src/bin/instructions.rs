@@ -16,9 +16,9 @@ use clap::{Parser, Subcommand};
 use perpend_bench::{Failure, callgrind};
 
 use crate::fixed::Fixed;
-use crate::kept::Kept;
+use crate::kept::{Cost, Kept};
 
-/// A count may rise by this share; one that falls by more asks for a new table.
+/// Instructions may rise by this share; where they fall by more, a new table is asked for. Allocations may not rise.
 const TOLERANCE: f64 = 0.03;
 
 /// Instructions of fixed queries by every method.
@@ -57,7 +57,7 @@ fn main() -> Result<ExitCode, Failure> {
                 );
             }
             if !setup_only {
-                wanted.iter().for_each(Fixed::ask);
+                wanted.iter().for_each(|fixed| fixed.ask(callgrind::counted));
             }
             Ok(ExitCode::SUCCESS)
         }
@@ -65,47 +65,63 @@ fn main() -> Result<ExitCode, Failure> {
     }
 }
 
-/// Prints every count beside the one that is kept.
+/// Prints every cost beside the one that is kept.
 fn compare(update: bool) -> Result<ExitCode, Failure> {
     let fixed = Fixed::all()?;
-    let counts = callgrind::instructions(&["ask".as_ref()])?;
-    if counts.len() != fixed.len() {
-        return Err(format!("{} queries are made and callgrind counted {}", fixed.len(), counts.len()).into());
+    let instructions = callgrind::instructions(&["ask".as_ref()])?;
+    if instructions.len() != fixed.len() {
+        return Err(format!("{} queries are made and callgrind counted {}", fixed.len(), instructions.len()).into());
     }
+    let costs: Vec<Cost> = fixed
+        .iter()
+        .zip(instructions)
+        .map(|(fixed, instructions)| Cost { instructions, allocations: allocations(fixed) })
+        .collect();
     let kept = Kept::read()?;
-    println!("{:<16}{:<28}{:>12}{:>12}{:>9}", "method", "query", "measured", "kept", "ratio");
+    println!(
+        "{:<16}{:<26}{:>12}{:>12}{:>9}{:>14}{:>8}",
+        "method", "query", "instructions", "kept", "ratio", "allocations", "kept"
+    );
     let (mut more, mut less) = (0, 0);
-    for (Fixed { method, name, .. }, count) in fixed.iter().zip(&counts) {
-        let Some(before) = kept.count(method, name) else {
+    for (Fixed { method, name, .. }, cost) in fixed.iter().zip(&costs) {
+        let Cost { instructions, allocations } = *cost;
+        let Some(before) = kept.cost(method, name) else {
             more += 1;
-            println!("{method:<16}{name:<28}{count:>12}{:>12}{:>9}  new", "-", "-");
+            println!("{method:<16}{name:<26}{instructions:>12}{:>12}{:>9}{allocations:>14}{:>8}  new", "-", "-", "-");
             continue;
         };
-        let ratio = *count as f64 / before as f64;
-        let remark = if ratio > 1.0 + TOLERANCE {
+        let ratio = instructions as f64 / before.instructions as f64;
+        let remark = if ratio > 1.0 + TOLERANCE || allocations > before.allocations {
             more += 1;
             "MORE"
-        } else if ratio < 1.0 - TOLERANCE {
+        } else if ratio < 1.0 - TOLERANCE || allocations < before.allocations {
             less += 1;
             "less"
         } else {
             ""
         };
-        println!("{method:<16}{name:<28}{count:>12}{before:>12}{ratio:>9.4}  {remark}");
+        println!(
+            "{method:<16}{name:<26}{instructions:>12}{:>12}{ratio:>9.4}{allocations:>14}{:>8}  {remark}",
+            before.instructions, before.allocations
+        );
     }
     let gone = kept.names().filter(|name| !fixed.iter().any(|f| (f.method, f.name.as_str()) == *name)).count();
     if update {
-        let rows = fixed.iter().zip(&counts).map(|(fixed, count)| (fixed.method, fixed.name.as_str(), *count));
+        let rows = fixed.iter().zip(&costs).map(|(fixed, cost)| (fixed.method, fixed.name.as_str(), *cost));
         kept::write(rows)?;
-        println!("{} counts kept", counts.len());
+        println!("{} rows kept", costs.len());
         return Ok(ExitCode::SUCCESS);
     }
-    println!(
-        "{} counts: {more} above the tolerance of {TOLERANCE} or new, {less} below, {gone} kept ones not asked",
-        counts.len()
-    );
-    if more + less > 0 || gone > 0 {
+    println!("{} rows: {more} above what is kept or new, {less} below, {gone} kept ones not asked", costs.len());
+    if more + less + gone > 0 {
         println!("`.ci/instructions --update` keeps what is counted now; the table was made with {}", kept.compiler());
     }
     Ok(if more == 0 && gone == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// How often a query asks for memory.
+fn allocations(fixed: &Fixed) -> u64 {
+    let mut count = 0;
+    fixed.ask(|call| count = allocation_counter::measure(call).count_total);
+    count
 }

@@ -4,7 +4,6 @@ use std::hint::black_box;
 use std::sync::Arc;
 
 use glam::DVec3;
-use perpend_bench::callgrind::counted;
 use perpend_bench::{Failure, PreparedEntity, corpora, prepared_set};
 use perpend_projection::{Method, Prepared, Query, QueryOptions, Scratch};
 
@@ -131,14 +130,14 @@ impl Fixed {
         Ok(all)
     }
 
-    /// Asks it: once uncounted, so that tables and working memory are there, and once counted.
-    pub(crate) fn ask(&self) {
+    /// Asks it: once alone, so that tables and working memory are there, and once more by `measure`, which is given the call and makes it.
+    pub(crate) fn ask(&self, mut measure: impl FnMut(&mut dyn FnMut())) {
         let Self { prepared, query, .. } = self;
         let hint = match self.task {
             Task::Query => None,
             Task::Hinted(hint) => Some(hint),
             Task::Preparation => {
-                counted(&mut || {
+                measure(&mut || {
                     let prepared = Prepared::new(Arc::clone(prepared.definition()), None);
                     black_box(prepared.project(query, &mut Scratch::default()));
                 });
@@ -147,7 +146,7 @@ impl Fixed {
         };
         let mut scratch = Scratch::default();
         black_box(prepared.project_near(query, hint, &mut scratch));
-        counted(&mut || {
+        measure(&mut || {
             black_box(prepared.project_near(query, hint, &mut scratch));
         });
     }

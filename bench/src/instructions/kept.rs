@@ -7,10 +7,18 @@ use std::process::Command;
 
 use perpend_bench::Failure;
 
+/// What a query takes.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Cost {
+    pub instructions: u64,
+    /// How often memory is asked for.
+    pub allocations: u64,
+}
+
 /// The counts of an earlier run, by method and query, with the compiler that made that program.
 pub(crate) struct Kept {
     compiler: String,
-    counts: HashMap<(String, String), u64>,
+    counts: HashMap<(String, String), Cost>,
 }
 
 impl Kept {
@@ -27,16 +35,17 @@ impl Kept {
                 kept.compiler = compiler.to_owned();
                 continue;
             }
-            let [method, query, count] = line.split(',').collect::<Vec<_>>()[..] else {
+            let [method, query, instructions, allocations] = line.split(',').collect::<Vec<_>>()[..] else {
                 return Err(format!("{}: no row: {line}", file().display()).into());
             };
-            kept.counts.insert((method.to_owned(), query.to_owned()), count.parse()?);
+            let cost = Cost { instructions: instructions.parse()?, allocations: allocations.parse()? };
+            kept.counts.insert((method.to_owned(), query.to_owned()), cost);
         }
         Ok(kept)
     }
 
     /// What is kept of a query by a method.
-    pub(crate) fn count(&self, method: &str, query: &str) -> Option<u64> {
+    pub(crate) fn cost(&self, method: &str, query: &str) -> Option<Cost> {
         self.counts.get(&(method.to_owned(), query.to_owned())).copied()
     }
 
@@ -51,14 +60,14 @@ impl Kept {
     }
 }
 
-const HEADER: &str = "method,query,instructions";
+const HEADER: &str = "method,query,instructions,allocations";
 
 /// Keeps these counts in place of all others.
-pub(crate) fn write<'a>(counts: impl Iterator<Item = (&'a str, &'a str, u64)>) -> Result<(), Failure> {
+pub(crate) fn write<'a>(counts: impl Iterator<Item = (&'a str, &'a str, Cost)>) -> Result<(), Failure> {
     let version = Command::new("rustc").arg("--version").output()?;
     let mut text = format!("# {}\n{HEADER}\n", String::from_utf8(version.stdout)?.trim());
-    for (method, query, count) in counts {
-        writeln!(text, "{method},{query},{count}")?;
+    for (method, query, Cost { instructions, allocations }) in counts {
+        writeln!(text, "{method},{query},{instructions},{allocations}")?;
     }
     Ok(std::fs::write(file(), text)?)
 }
