@@ -1,6 +1,7 @@
 //! Entities and queries as the files of the test sets hold them.
 
 use std::path::{Path, PathBuf};
+use std::str::{FromStr, Split};
 
 use glam::DVec3;
 use perpend_kernel::{Definition, InvalidDefinition, NurbsCurve, NurbsSurface};
@@ -81,18 +82,35 @@ pub struct Row {
 ///
 /// What the file system says, or the first line that is no row.
 pub fn rows(path: &Path) -> Result<Vec<Row>, Failure> {
+    each_line(path, |fields| {
+        let (entity, point) = asked(fields)?;
+        Ok(Row { entity, point, distance: next(fields)? })
+    })
+}
+
+/// Reads what a file with the columns `entity,x,y,z` in front asks: an entity, and a point.
+///
+/// # Errors
+///
+/// What the file system says, or the first line that asks nothing.
+pub fn points(path: &Path) -> Result<Vec<(u64, DVec3)>, Failure> {
+    each_line(path, asked)
+}
+
+/// What is read of each line but the header, from its fields.
+fn each_line<T>(path: &Path, read: impl Fn(&mut Split<'_, char>) -> Result<T, Failure>) -> Result<Vec<T>, Failure> {
     let text = std::fs::read_to_string(path).map_err(|error| format!("{}: {error}", path.display()))?;
-    text.lines()
-        .skip(1)
-        .map(|line| {
-            let mut fields = line.split(',');
-            let mut next = || fields.next().ok_or_else(|| format!("too few columns: {line}"));
-            let entity = next()?.parse()?;
-            let mut number = || -> Result<f64, Failure> { Ok(next()?.parse()?) };
-            let point = DVec3::new(number()?, number()?, number()?);
-            Ok(Row { entity, point, distance: number()? })
-        })
-        .collect()
+    let line =
+        |line: &str| read(&mut line.split(',')).map_err(|error| format!("{}: {error}: {line}", path.display()).into());
+    text.lines().skip(1).map(line).collect()
+}
+
+fn asked(fields: &mut Split<'_, char>) -> Result<(u64, DVec3), Failure> {
+    Ok((next(fields)?, DVec3::new(next(fields)?, next(fields)?, next(fields)?)))
+}
+
+fn next<T: FromStr<Err: std::error::Error + 'static>>(fields: &mut Split<'_, char>) -> Result<T, Failure> {
+    Ok(fields.next().ok_or("too few columns")?.parse()?)
 }
 
 impl Corpus {

@@ -27,6 +27,10 @@ mod scan;
 mod sets;
 #[path = "../speed/table.rs"]
 mod table;
+#[path = "../speed/worst.rs"]
+mod worst;
+
+use std::path::PathBuf;
 
 use clap::{Parser, ValueEnum};
 use perpend_bench::Failure;
@@ -51,6 +55,8 @@ enum Part {
     Fresh,
     /// Larger surfaces, more threads, more points.
     Growth,
+    /// The queries that take longest, with their instructions.
+    Worst,
 }
 
 /// How fast perpend is, beside its goals.
@@ -64,6 +70,9 @@ struct Arguments {
     /// Asks ten million points, too.
     #[arg(long)]
     long: bool,
+    /// Only asks the queries of a file, for callgrind.
+    #[arg(long, hide = true)]
+    replay: Option<PathBuf>,
 }
 
 /// What a part is given.
@@ -75,20 +84,22 @@ struct Run {
 
 fn main() -> Result<(), Failure> {
     let arguments = Arguments::parse();
+    if let Some(file) = arguments.replay {
+        return worst::replay(&file);
+    }
     let run = Run { sets: Sets::read()?, passes: arguments.passes as usize, long: arguments.long };
     let mut table = Table::scaled_by(calibration::evaluation_micros(&run)?);
     let parts = if arguments.parts.is_empty() { Part::value_variants() } else { &arguments.parts };
-    for part in parts {
-        match part {
-            Part::Corpora => corpora::measure(&run, &mut table)?,
-            Part::Scan => scan::measure(&run, &mut table)?,
-            Part::Classes => classes::measure(&run, &mut table)?,
-            Part::Gaps => gaps::measure(&run, &mut table)?,
-            Part::Real => real::measure(&run, &mut table)?,
-            Part::Fresh => fresh::measure(&run, &mut table)?,
-            Part::Growth => growth::measure(&run, &mut table)?,
-        }
-    }
+    let done = parts.iter().try_for_each(|part| match part {
+        Part::Corpora => corpora::measure(&run, &mut table),
+        Part::Scan => scan::measure(&run, &mut table),
+        Part::Classes => classes::measure(&run, &mut table),
+        Part::Gaps => gaps::measure(&run, &mut table),
+        Part::Real => real::measure(&run, &mut table),
+        Part::Fresh => fresh::measure(&run, &mut table),
+        Part::Growth => growth::measure(&run, &mut table),
+        Part::Worst => worst::measure(&run, &mut table),
+    });
     table.close();
-    Ok(())
+    done
 }
