@@ -32,10 +32,15 @@ impl Table {
     /// A table on a machine on which an evaluation takes so many microseconds.
     pub(crate) fn scaled_by(evaluation: f64) -> Self {
         let factor = evaluation / REFERENCE;
+        // where other programs run, too, times are longer, and threads bring less
+        if let Ok(load) = std::fs::read_to_string("/proc/loadavg") {
+            let load: Vec<&str> = load.split(' ').take(3).collect();
+            println!("load of the machine over the last 1, 5 and 15 minutes: {}", load.join(", "));
+        }
         println!(
             "a bicubic point with all second derivatives: {evaluation:.4} us; goals that are times: x {factor:.2}"
         );
-        println!("{:<66}{:>12}{:>12}{:>12}  reached", "what", "goal", "scaled", "measured");
+        println!("{:<74}{:>12}{:>12}{:>12}  reached", "what", "goal", "scaled", "measured");
         Self { factor, reached: 0, missed: Vec::new() }
     }
 
@@ -60,14 +65,14 @@ impl Table {
                 [format!(">={}", with_unit(least)), String::new(), self.judge(&what, measured >= least)]
             }
         };
-        println!("{what:<66}{stated:>12}{scaled:>12}{:>12}  {is_reached}", with_unit(measured));
+        println!("{what:<74}{stated:>12}{scaled:>12}{:>12}  {is_reached}", with_unit(measured));
     }
 
     /// What answers were found guilty of; the goal is nothing.
     pub(crate) fn faults(&mut self, what: impl Display, faults: Faults) {
         let what = format!("{what}: wrong / false / uncertified");
         let is_reached = self.judge(&what, faults.none());
-        println!("{what:<66}{:>12}{:>12}{:>12}  {is_reached}", "0 / 0 / 0", "", faults.to_string());
+        println!("{what:<74}{:>12}{:>12}{:>12}  {is_reached}", "0 / 0 / 0", "", faults.to_string());
     }
 
     /// How many goals were reached, and which were not.

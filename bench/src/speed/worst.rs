@@ -34,7 +34,9 @@ struct Asked {
 }
 
 pub(crate) fn measure(run: &Run, table: &mut Table) -> Result<(), Failure> {
-    table.heading(format!("single queries by the certified solver: the {COUNTED} slowest, fastest of {TURNS}"));
+    table.heading(format!(
+        "single queries by the certified solver: the {COUNTED} slowest, their instructions, fastest of {TURNS}"
+    ));
     let mut slowest = Vec::new();
     for (set, _) in run.sets.named() {
         let file = |ending: &str| corpora().join(format!("{set}{ending}"));
@@ -51,12 +53,7 @@ pub(crate) fn measure(run: &Run, table: &mut Table) -> Result<(), Failure> {
     let mut worst = (0, 0);
     for (k, (asked, count)) in slowest.iter().zip(&counts).enumerate() {
         let DVec3 { x, y, z } = asked.point;
-        table.line(
-            format!("  {} ({x:.4}, {y:.4}, {z:.4}), {count} instructions", asked.name),
-            Goal::None,
-            "us",
-            asked.micros,
-        );
+        table.line(format!("  {} ({x:.4}, {y:.4}, {z:.4}), {count}", asked.name), Goal::None, "us", asked.micros);
         worst = worst.max((*count, k));
     }
     let (count, k) = worst;
