@@ -1,101 +1,17 @@
 //! Benchmarks of perpend: questions that an application would ask, with the worst error seen beside every time.
 
-use std::path::{Path, PathBuf};
+pub mod callgrind;
+mod case;
+mod corpus;
+mod judgement;
+mod prepared_set;
+mod sequences;
 
-use glam::DVec3;
-use perpend_kernel::{Definition, InvalidDefinition, NurbsCurve, NurbsSurface};
-use serde::Deserialize;
+pub use case::{Case, geometric_mean, slowest, time_all};
+pub use corpus::{Corpus, CorpusEntity, Row, corpora, points, real_models, rows};
+pub use judgement::{Faults, Judge};
+pub use prepared_set::{PreparedEntity, prepared_set};
+pub use sequences::{scan, spread, wavy};
 
-/// A set of entities with queries, as files of the test corpora hold them.
-#[derive(Debug, Deserialize)]
-pub struct Corpus {
-    /// Its entities.
-    pub entities: Vec<CorpusEntity>,
-}
-
-/// An entity of a corpus.
-#[derive(Debug, Deserialize)]
-pub struct CorpusEntity {
-    /// Its id.
-    pub id: u64,
-    /// Its name.
-    pub name: String,
-    #[serde(flatten)]
-    data: Data,
-}
-
-#[derive(Debug, Deserialize)]
-#[serde(tag = "kind", rename_all = "lowercase")]
-enum Data {
-    Curve {
-        degree: usize,
-        knots: Vec<f64>,
-        points: Vec<DVec3>,
-        weights: Option<Vec<f64>>,
-    },
-    Surface {
-        degree_u: usize,
-        degree_v: usize,
-        knots_u: Vec<f64>,
-        knots_v: Vec<f64>,
-        points: Vec<Vec<DVec3>>,
-        weights: Option<Vec<Vec<f64>>>,
-    },
-}
-
-impl CorpusEntity {
-    /// The entity's definition.
-    ///
-    /// # Errors
-    ///
-    /// The first rule that it breaks.
-    pub fn definition(&self) -> Result<Definition, InvalidDefinition> {
-        Ok(match &self.data {
-            Data::Curve { degree, knots, points, weights } => {
-                NurbsCurve::new(*degree, knots.clone(), points.clone(), weights.clone())?.into()
-            }
-            Data::Surface { degree_u, degree_v, knots_u, knots_v, points, weights } => {
-                let knots = (knots_u.clone(), knots_v.clone());
-                NurbsSurface::new((*degree_u, *degree_v), knots, points.clone(), weights.clone())?.into()
-            }
-        })
-    }
-}
-
-/// A query of a corpus with its true distance.
-#[derive(Debug, Clone, Copy)]
-pub struct Row {
-    /// The entity that is asked.
-    pub entity: u64,
-    /// The query point.
-    pub point: DVec3,
-    /// Its distance, or the best known.
-    pub distance: f64,
-}
-
-/// Reads the rows of a file with the columns `entity,x,y,z,distance` in front.
-///
-/// # Errors
-///
-/// What the file system says, or the first line that is no row.
-pub fn rows(path: &Path) -> Result<Vec<Row>, Box<dyn std::error::Error>> {
-    let text = std::fs::read_to_string(path)?;
-    text.lines()
-        .skip(1)
-        .map(|line| {
-            let mut fields = line.split(',');
-            let mut next = || fields.next().ok_or_else(|| format!("too few columns: {line}"));
-            let entity = next()?.parse()?;
-            let mut number = || -> Result<f64, Box<dyn std::error::Error>> { Ok(next()?.parse()?) };
-            let point = DVec3::new(number()?, number()?, number()?);
-            Ok(Row { entity, point, distance: number()? })
-        })
-        .collect()
-}
-
-/// The folder of the test corpora: `tests/data` of the workspace, or what the environment variable `PERPEND_CORPUS` names.
-#[must_use]
-pub fn corpora() -> PathBuf {
-    let workspace = Path::new(env!("CARGO_MANIFEST_DIR")).join("../tests/data");
-    std::env::var_os("PERPEND_CORPUS").map_or(workspace, PathBuf::from)
-}
+/// Why a benchmark ends early; its message is for the person who ran it.
+pub type Failure = Box<dyn std::error::Error>;

@@ -8,16 +8,16 @@ use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
-use perpend_bench::{Corpus, rows};
+use perpend_bench::{Corpus, Failure, Faults, Judge, Row, rows};
 use perpend_projection::{Prepared, Query, QueryOptions, Scratch};
 
-fn main() -> Result<(), Box<dyn std::error::Error>> {
+fn main() -> Result<(), Failure> {
     let arguments: Vec<String> = std::env::args().skip(1).collect();
     let [corpus, truth, rest @ ..] = arguments.as_slice() else {
         return Err("usage: corpora CORPUS.json TRUTH.csv [--verbose]".into());
     };
     let verbose = rest.iter().any(|a| a == "--verbose");
-    let corpus: Corpus = serde_json::from_reader(std::io::BufReader::new(std::fs::File::open(corpus)?))?;
+    let corpus = Corpus::read(Path::new(corpus))?;
     let rows = rows(Path::new(truth))?;
     println!(
         "{:<4}{:<24}{:>7}{:>7}{:>7}{:>7}{:>9}{:>10}{:>8}{:>7}{:>7}{:>8}{:>9}{:>9}",
@@ -43,12 +43,12 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             continue;
         }
         let definition = Arc::new(entity.definition()?);
-        let (size, reach) = (definition.size(), definition.reach());
+        let judge = Judge::new(&definition);
         let start = Instant::now();
         let prepared = Prepared::new(definition, None);
         let preparation = start.elapsed().as_secs_f64() * 1e3;
         let mut scratch = Scratch::default();
-        let ask = |row: &perpend_bench::Row, scratch: &mut Scratch| {
+        let ask = |row: &Row, scratch: &mut Scratch| {
             let query = Query::new(row.point, QueryOptions::default()).expect("finite points");
             prepared.project(&query, scratch).expect("no distance limit")
         };
@@ -56,22 +56,16 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             ask(row, &mut scratch);
         }
         scratch.statistics = Default::default();
-        let (mut wrong, mut false_bound, mut open, mut times) = (0, 0, 0, Vec::new());
+        let (mut sum, mut times) = (Faults::default(), Vec::new());
         for row in &queries {
             let start = Instant::now();
             let foot = ask(row, &mut scratch);
             times.push(start.elapsed().as_secs_f64() * 1e6);
-            let noise = 16.0 * f64::EPSILON * reach.max(row.point.abs().max_element()) + 1e-13 * row.distance;
-            let is_wrong = (foot.distance - row.distance).abs() > 1e-9 * size + noise;
-            let is_false = foot.lower_bound > row.distance + 1e-10 * size + noise;
-            let allowed = 1e-9 * size + 32.0 * f64::EPSILON * (reach + row.point.abs().max_element());
-            let is_open = foot.gap() > allowed;
-            wrong += u32::from(is_wrong);
-            false_bound += u32::from(is_false);
-            open += u32::from(is_open);
-            if verbose && (is_wrong || is_false || is_open) {
+            let faults = judge.faults(row, &foot);
+            if verbose && !faults.none() {
                 println!("  {:?} truth {:e}: {foot:?}", row.point, row.distance);
             }
+            sum += faults;
         }
         let n = queries.len() as f64;
         let mut mean = f64::MAX;
@@ -90,9 +84,9 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
             entity.id,
             entity.name,
             queries.len(),
-            wrong,
-            false_bound,
-            open,
+            sum.wrong,
+            sum.false_bounds,
+            sum.open,
             mean,
             times[times.len() * 999 / 1000],
             per(statistics.boxes),

@@ -11,16 +11,14 @@ use std::sync::Arc;
 use std::time::Instant;
 
 use glam::DVec3;
-use perpend_bench::{Corpus, rows};
+use perpend_bench::{Corpus, Failure, rows, spread};
 use perpend_kernel::{Definition, Ellipse, Frame, NurbsCurve, extrusion, revolution, ruled};
 use perpend_projection::{Method, Prepared, Query, QueryOptions, Scratch};
-
-type Error = Box<dyn std::error::Error>;
 
 /// Passes over the queries, of which the fastest counts: other programs only ever add time.
 const PASSES: usize = 15;
 
-fn main() -> Result<(), Error> {
+fn main() -> Result<(), Failure> {
     let folder = std::env::args().nth(1).unwrap_or_else(|| "tests/data".to_owned());
     println!(
         "{:<24}{:>7}{:>14}{:>14}{:>14}{:>8}{:>10}{:>13}",
@@ -29,8 +27,7 @@ fn main() -> Result<(), Error> {
     let mut ratios = Vec::new();
     for name in ["circles-table1", "quadrics"] {
         let path = Path::new(&folder).join(name);
-        let file = std::fs::File::open(path.with_extension("json"))?;
-        let corpus: Corpus = serde_json::from_reader(std::io::BufReader::new(file))?;
+        let corpus = Corpus::read(&path.with_extension("json"))?;
         let rows = rows(&path.with_extension("truth.csv"))?;
         for entity in &corpus.entities {
             let points: Vec<DVec3> = rows.iter().filter(|row| row.entity == entity.id).map(|row| row.point).collect();
@@ -48,7 +45,7 @@ fn main() -> Result<(), Error> {
 }
 
 /// Surfaces over free and elliptic profiles, and a ruled one.
-fn profiles() -> Result<Vec<(&'static str, Definition)>, Error> {
+fn profiles() -> Result<Vec<(&'static str, Definition)>, Failure> {
     let knots = vec![0.0, 0.0, 0.0, 0.0, 0.2, 0.4, 0.7, 1.0, 1.0, 1.0, 1.0];
     let curve = |offset: DVec3, heights: [f64; 7]| {
         let points = heights.iter().enumerate().map(|(i, h)| offset + DVec3::new(i as f64, *h, 0.0)).collect();
@@ -66,18 +63,12 @@ fn profiles() -> Result<Vec<(&'static str, Definition)>, Error> {
     ])
 }
 
-/// Points that fill the cube of side 1 about the origin evenly: multiples of the inverse powers of the plastic number's analogue in space.
-fn spread(k: u32) -> DVec3 {
-    let steps = [0.819_172_513_396_164_4, 0.671_043_606_703_789_2, 0.549_700_477_901_970_2];
-    DVec3::from(steps.map(|step: f64| (f64::from(k) * step).fract() - 0.5))
-}
-
 /// Prints a line of the table and gives the ratio of times.
-fn compared(name: &str, definition: Definition, points: &[DVec3]) -> Result<f64, Error> {
+fn compared(name: &str, definition: Definition, points: &[DVec3]) -> Result<f64, Failure> {
     let definition = Arc::new(definition);
     let prepared = Prepared::new(Arc::clone(&definition), None);
     let mut scratch = Scratch::default();
-    let queries = |method| -> Result<Vec<Query>, Error> {
+    let queries = |method| -> Result<Vec<Query>, Failure> {
         let options = QueryOptions { method: Some(method), ..QueryOptions::default() };
         Ok(points.iter().map(|p| Query::new(*p, options)).collect::<Result<_, _>>()?)
     };

@@ -13,7 +13,7 @@ mod selimovic;
 #[path = "../papers/xu.rs"]
 mod xu;
 
-type Failure = Box<dyn std::error::Error>;
+use perpend_bench::Failure;
 
 /// Prints the tables of a paper.
 type Print = fn() -> Result<(), Failure>;

@@ -18,7 +18,7 @@ pub(crate) fn print() -> Result<(), Failure> {
     );
     println!("{:<22}{:>10}{:>27}{:>27}{:>18}", "entity", "plan", "hierarchy", "exclusion, proved", "its own, a query");
     for set in ["seeds-curves", "seeds-surfaces"] {
-        let corpus: Corpus = serde_json::from_reader(std::fs::File::open(corpora().join(set).with_extension("json"))?)?;
+        let corpus = Corpus::read(&corpora().join(set).with_extension("json"))?;
         let truth = rows(&corpora().join(format!("{set}.truth.csv")))?;
         for entity in &corpus.entities {
             let definition = Arc::new(entity.definition()?);

@@ -16,7 +16,7 @@ const GRID: usize = 1000;
 
 pub(crate) fn print() -> Result<(), Failure> {
     for (set, figure) in [("seeds-curves", "Fig. 8, curves"), ("seeds-surfaces", "Fig. 10, surfaces")] {
-        let corpus: Corpus = serde_json::from_reader(std::fs::File::open(corpora().join(set).with_extension("json"))?)?;
+        let corpus = Corpus::read(&corpora().join(set).with_extension("json"))?;
         let truth = rows(&corpora().join(format!("{set}.truth.csv")))?;
         println!("\n{figure}: mean subdivisions over {GRID} points, flatness 1e-2 | 1e-3 | 1e-4 of the size");
         println!(

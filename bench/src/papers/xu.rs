@@ -24,7 +24,7 @@ const WRONG: f64 = 1e-6;
 
 pub(crate) fn print() -> Result<(), Failure> {
     for set in ["seeds-curves", "circles-table1", "seeds-surfaces", "quadrics"] {
-        let corpus: Corpus = serde_json::from_reader(std::fs::File::open(corpora().join(set).with_extension("json"))?)?;
+        let corpus = Corpus::read(&corpora().join(set).with_extension("json"))?;
         let truth = rows(&corpora().join(format!("{set}.truth.csv")))?;
         println!(
             "\nXu et al. 2014, {set}: {QUERIES} queries each; wrong answers in %, work, and median times in microseconds"

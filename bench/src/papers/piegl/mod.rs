@@ -35,8 +35,7 @@ pub(crate) fn run(arguments: &[String]) -> Result<(), Failure> {
 }
 
 fn corpus(set: &str) -> Result<Corpus, Failure> {
-    let file = corpora().join(set).with_extension("json");
-    Ok(serde_json::from_reader(std::io::BufReader::new(std::fs::File::open(file)?))?)
+    Corpus::read(&corpora().join(set).with_extension("json"))
 }
 
 fn definition(set: &str, name: &str) -> Result<Arc<Definition>, Failure> {

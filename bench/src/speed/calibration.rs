@@ -1,0 +1,40 @@
+//! What the machine takes for the work that every solver does: a point of a bicubic B-spline surface with all second derivatives.
+
+use std::time::Instant;
+
+use glam::DVec3;
+use perpend_bench::{Failure, spread};
+use perpend_kernel::{Definition, Direction};
+
+use crate::Run;
+
+/// How many places are evaluated in a pass.
+const PLACES: u32 = 20_000;
+
+/// Microseconds of an evaluation at scattered parameters.
+pub(crate) fn evaluation_micros(run: &Run) -> Result<f64, Failure> {
+    let wavy = run.sets.surfaces.iter().find(|entity| entity.name == "wavy-40x40").ok_or("wavy-40x40 is absent")?;
+    let Definition::NurbsSurface(surface) = &**wavy.prepared.definition() else {
+        return Err("wavy-40x40 is no surface".into());
+    };
+    let along = |direction: Direction, share: f64| {
+        let (first, last) = surface.domain(direction);
+        first + (last - first) * share
+    };
+    let at = |k: u32| {
+        let share = spread(k) + 0.5;
+        (along(Direction::U, share.x), along(Direction::V, share.y))
+    };
+    let places: Vec<(f64, f64)> = (0..PLACES).map(at).collect();
+    let pass = |_| {
+        let start = Instant::now();
+        for (u, v) in &places {
+            let mut d = [DVec3::ZERO; 9];
+            surface.derivatives(*u, *v, 2, &mut d);
+            std::hint::black_box(&d);
+        }
+        start.elapsed().as_secs_f64() * 1e6 / places.len() as f64
+    };
+    // the figure scales all others: it is timed more often than they are
+    Ok((0..5 * run.passes).map(pass).fold(f64::INFINITY, f64::min))
+}
