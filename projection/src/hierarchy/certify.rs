@@ -237,7 +237,7 @@ impl Proof<'_> {
             // not tried yet, or a corner is proven nearer than tau
             self.tried = true;
             let before = state.tau();
-            self.newton_from_least(cell, g, state);
+            self.newton_from_least(cell, g, least, state);
             if state.tau() < before {
                 return Verdict::Again(cell);
             }
@@ -310,11 +310,15 @@ impl Proof<'_> {
     }
 
     /// Newton's method from where the least coefficient has its Greville point: it may find a nearer point.
-    fn newton_from_least(&self, cell: Cell, g: &[f64], state: &mut State<'_>) {
+    fn newton_from_least(&self, cell: Cell, g: &[f64], least: f64, state: &mut State<'_>) {
         let Layout { m, n } = cell.layout;
-        let indices = (0..=m).flat_map(|i| (0..=n).map(move |j| (i, j)));
-        let value = |(i, j): (usize, usize)| g[cell.layout.at(i, j)];
-        let (i, j) = indices.fold((0, 0), |best, at| if value(at) < value(best) { at } else { best });
+        let at = g.iter().position(|x| *x == least).unwrap_or_default();
+        let (row, column) = (at / cell.layout.stride(), at % cell.layout.stride());
+        let (i, j) = match (m, n) {
+            (_, 0) => (column, 0),
+            (0, _) => (0, column),
+            _ => (row, column),
+        };
         let (extent_s, extent_t) = cell.extent();
         let share = |i: usize, degree: usize| if degree > 0 { i as f64 / degree as f64 } else { 0.0 };
         let start = (cell.domain.s.0 + extent_s * share(i, m), cell.domain.t.0 + extent_t * share(j, n));
@@ -394,8 +398,8 @@ fn split(level: Level, cell: Cell, memory: &mut Memory) {
     let largest = net::largest(level, &memory.nets[cell.offset..], cell.layout);
     memory.nets.resize(cell.offset + 2 * len, 0.0);
     let (low, high) = memory.nets[cell.offset..].split_at_mut(len);
-    let in_s = net::bends_more_in_s(low, cell.layout);
-    net::halve(low, high, cell.layout, in_s);
+    let in_s = net::bends_more_in_s(level, low, cell.layout);
+    net::halve(level, low, high, cell.layout, in_s);
     let (mut first, mut second) = (cell, cell);
     let degree = if in_s {
         let middle = 0.5 * (cell.domain.s.0 + cell.domain.s.1);

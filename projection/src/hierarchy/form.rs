@@ -198,11 +198,11 @@ mod tests {
                 let largest = net::largest(level, &found, layout);
                 let (mut high, mut exact_high) = (found.clone(), expected.clone());
                 if n == 0 || random.next().is_multiple_of(2) {
-                    net::halve(&mut found, &mut high, layout, true);
+                    net::halve(level, &mut found, &mut high, layout, true);
                     halve(&mut expected, &mut exact_high, (0..=n).map(|j| (j, n + 1)), m);
                     bound += m as f64 * ROUNDING * largest;
                 } else {
-                    net::halve(&mut found, &mut high, layout, false);
+                    net::halve(level, &mut found, &mut high, layout, false);
                     halve(&mut expected, &mut exact_high, (0..=m).map(|i| (i * (n + 1), 1)), n);
                     bound += n as f64 * ROUNDING * largest;
                 }

@@ -25,6 +25,7 @@ impl Jet {
             (1, 0) => curve::<_, 2>(simd, net, 1, s).jet(rational),
             (2, 0) => curve::<_, 3>(simd, net, 2, s).jet(rational),
             (3, 0) => curve::<_, 4>(simd, net, 3, s).jet(rational),
+            (p @ 4..8, 0) => curve::<_, 8>(simd, net, p, s).jet(rational),
             (p, 0) => any_curve(simd, net, p, s).jet(rational),
             (1, 1) => surface::<_, 2, 2>(simd, net, 1, 1, s, t).jet(rational),
             (1, 2) => surface::<_, 2, 3>(simd, net, 1, 2, s, t).jet(rational),
@@ -34,6 +35,7 @@ impl Jet {
             (3, 2) => surface::<_, 4, 3>(simd, net, 3, 2, s, t).jet(rational),
             (2, 3) => surface::<_, 3, 4>(simd, net, 2, 3, s, t).jet(rational),
             (3, 3) => surface::<_, 4, 4>(simd, net, 3, 3, s, t).jet(rational),
+            (p @ ..6, q @ ..6) => surface::<_, 6, 6>(simd, net, p, q, s, t).jet(rational),
             (p, q) => any_surface(simd, net, p, q, s, t).jet(rational),
         })
     }

@@ -349,47 +349,78 @@ pub(super) fn differences<S: Simd>(simd: S, g: &[f64], extent: impl Extent) -> D
 }
 
 /// Whether the net varies more in s than in t, by second differences and degrees.
-pub(super) fn bends_more_in_s(g: &[f64], layout: Layout) -> bool {
+pub(super) fn bends_more_in_s(level: Level, g: &[f64], layout: Layout) -> bool {
     let Layout { m, n } = layout;
     if m == 0 || n == 0 {
         return n == 0;
     }
-    let second = |a: usize, b: usize, c: usize| (g[a] - 2.0 * g[b] + g[c]).abs();
-    let (mut down, mut along) = (0.0_f64, 0.0_f64);
-    for i in 0..=m {
-        for j in 0..=n {
-            if i + 2 <= m {
-                down = down.max(second(layout.at(i, j), layout.at(i + 1, j), layout.at(i + 2, j)));
-            }
-            if j + 2 <= n {
-                along = along.max(second(layout.at(i, j), layout.at(i, j + 1), layout.at(i, j + 2)));
+    dispatch!(level, simd => with_extent!(layout, extent => {
+        let (down, along) = bends(simd, g, extent);
+        down * (m * m) as f64 > along * (n * n) as f64
+    }))
+}
+
+/// The largest |second differences| from row to row and along the rows.
+#[inline(always)]
+fn bends<S: Simd>(simd: S, g: &[f64], extent: impl Extent) -> (f64, f64) {
+    let (stride, columns) = (extent.stride(), extent.n() as f64);
+    let g = &g[..extent.rows_len() + LANES];
+    let zero = f64x4::splat(simd, 0.0);
+    let (mut down, mut along) = (zero, zero);
+    let mut column = 0;
+    while column < stride {
+        let second = indices(simd, column).simd_le(columns - 2.0);
+        for i in 0..=extent.m() {
+            let at = i * stride + column;
+            let here = load(simd, g, at);
+            let bend = here - load(simd, g, at + 1) * 2.0 + load(simd, g, at + 2);
+            along = along.max(second.select(bend.abs(), zero));
+            if i + 2 <= extent.m() {
+                down = down.max((here - load(simd, g, at + stride) * 2.0 + load(simd, g, at + 2 * stride)).abs());
             }
         }
+        column += LANES;
     }
-    down * (m * m) as f64 > along * (n * n) as f64
+    (-least_lane(-down), -least_lane(-along))
 }
 
 /// Halves the net in s or in t: `low` keeps the first half, `high` takes the second.
-pub(super) fn halve(low: &mut [f64], high: &mut [f64], layout: Layout, in_s: bool) {
-    let stride = layout.stride();
+pub(super) fn halve(level: Level, low: &mut [f64], high: &mut [f64], layout: Layout, in_s: bool) {
     if in_s && layout.n > 0 {
-        let m = layout.m;
-        let last = m * stride..layout.rows_len();
-        high[last.clone()].copy_from_slice(&low[last.clone()]);
-        for k in 1..=m {
-            for i in (k..=m).rev() {
-                let (above, row) = low.split_at_mut(i * stride);
-                for (x, y) in row[..stride].iter_mut().zip(&above[(i - 1) * stride..]) {
-                    *x = 0.5 * (*x + y);
-                }
-            }
-            high[(m - k) * stride..(m - k + 1) * stride].copy_from_slice(&low[last.clone()]);
-        }
+        dispatch!(level, simd => with_extent!(layout, extent => halve_down(simd, low, high, extent)));
         return;
     }
-    let degree = layout.along();
-    let rows = low[..layout.rows_len()].chunks_exact_mut(stride).zip(high.chunks_exact_mut(stride));
-    for (low, high) in rows {
+    dispatch!(level, _simd => with_extent!(layout, extent => halve_along(low, high, extent)));
+    layout.pad(low);
+    layout.pad(high);
+}
+
+#[inline(always)]
+fn halve_down<S: Simd>(simd: S, low: &mut [f64], high: &mut [f64], extent: impl Extent) {
+    let (m, stride, len) = (extent.m(), extent.stride(), extent.rows_len());
+    let (low, high) = (&mut low[..len], &mut high[..len]);
+    let mut column = 0;
+    while column < stride {
+        let last = m * stride + column;
+        load(simd, low, last).store_slice(&mut high[last..last + LANES]);
+        for k in 1..=m {
+            let mut here = load(simd, low, last);
+            for i in (k..=m).rev() {
+                let (at, above) = (i * stride + column, load(simd, low, (i - 1) * stride + column));
+                ((here + above) * 0.5).store_slice(&mut low[at..at + LANES]);
+                here = above;
+            }
+            let at = (m - k) * stride + column;
+            load(simd, low, last).store_slice(&mut high[at..at + LANES]);
+        }
+        column += LANES;
+    }
+}
+
+#[inline(always)]
+fn halve_along(low: &mut [f64], high: &mut [f64], extent: impl Extent) {
+    let (degree, stride, len) = (extent.n(), extent.stride(), extent.rows_len());
+    for (low, high) in low[..len].chunks_exact_mut(stride).zip(high[..len].chunks_exact_mut(stride)) {
         high[degree] = low[degree];
         for k in 1..=degree {
             for j in (k..=degree).rev() {
@@ -398,8 +429,6 @@ pub(super) fn halve(low: &mut [f64], high: &mut [f64], layout: Layout, in_s: boo
             high[degree - k] = low[degree];
         }
     }
-    layout.pad(low);
-    layout.pad(high);
 }
 
 #[cfg(test)]
@@ -482,7 +511,7 @@ pub(super) mod tests {
                     continue;
                 }
                 let (mut low, mut high) = (g.clone(), vec![0.0; g.len()]);
-                halve(&mut low, &mut high, layout, in_s);
+                halve(Level::new(), &mut low, &mut high, layout, in_s);
                 let degree = if in_s { m } else { n };
                 let index = |k: usize, other: usize| if in_s { layout.at(k, other) } else { layout.at(other, k) };
                 for other in 0..=if in_s { n } else { m } {

@@ -292,7 +292,7 @@ fn halves(level: Level, cell: Cell, down: bool) -> [Cell; 2] {
     let largest = net::largest(level, &low, layout);
     let mut high = vec![0.0; low.len()];
     let in_s = layout.n == 0 || (layout.m > 0 && down);
-    net::halve(&mut low, &mut high, layout, in_s);
+    net::halve(level, &mut low, &mut high, layout, in_s);
     let (mut first, mut second) = (domain, domain);
     let degree = if in_s {
         let middle = 0.5 * (domain.s.0 + domain.s.1);
