@@ -3,6 +3,8 @@
 //! The same tree serves the pieces of an entity and the entities of a model. A node holds the boxes of its four children side by side, so that
 //! one pass over the node's lanes tells the distances to all of them.
 
+use fearless_simd::prelude::*;
+use fearless_simd::{Level, dispatch, f64x4};
 use glam::DVec3;
 use perpend_kernel::Aabb;
 use smallvec::SmallVec;
@@ -20,10 +22,12 @@ pub struct Candidate {
 const WIDTH: usize = 4;
 
 /// A tree of axis-aligned boxes over items `0..n`, four children a node, immutable.
-#[derive(Debug, Clone, Default)]
+#[derive(Debug, Clone)]
 pub struct BoxTree {
     /// Depth first; the root is the first.
     nodes: Vec<Node>,
+    /// What the processor can do: changes times, and no bit.
+    level: Level,
 }
 
 /// The boxes of four children, one a lane; the box of a lane without a child holds nothing and is infinitely far.
@@ -58,28 +62,25 @@ impl Node {
 
     /// Squares of the distances from `p` to the children's boxes.
     #[inline(always)]
-    fn distances_squared(&self, p: DVec3) -> [f64; WIDTH] {
-        let mut sum = [0.0; WIDTH];
+    fn distances_squared<S: Simd>(&self, simd: S, p: DVec3) -> f64x4<S> {
+        let mut sum = f64x4::splat(simd, 0.0);
         for (axis, p) in p.to_array().into_iter().enumerate() {
-            for (lane, sum) in sum.iter_mut().enumerate() {
-                let (below, above) = (self.min[axis][lane] - p, p - self.max[axis][lane]);
-                let outside = if below > above { below } else { above };
-                let outside = if outside > 0.0 { outside } else { 0.0 };
-                *sum += outside * outside;
-            }
+            let (min, max) = (f64x4::simd_from(simd, self.min[axis]), f64x4::simd_from(simd, self.max[axis]));
+            let p = f64x4::splat(simd, p);
+            let outside = (min - p).max(p - max).max(0.0);
+            sum += outside * outside;
         }
         sum
     }
 
     /// Squares of the distances from `p` to the middles of the children's boxes, times four; not a number where there is no child.
     #[inline(always)]
-    fn middles_squared(&self, p: DVec3) -> [f64; WIDTH] {
-        let mut sum = [0.0; WIDTH];
+    fn middles_squared<S: Simd>(&self, simd: S, p: DVec3) -> f64x4<S> {
+        let mut sum = f64x4::splat(simd, 0.0);
         for (axis, p) in p.to_array().into_iter().enumerate() {
-            for (lane, sum) in sum.iter_mut().enumerate() {
-                let apart = (self.min[axis][lane] - p) + (self.max[axis][lane] - p);
-                *sum += apart * apart;
-            }
+            let (min, max) = (f64x4::simd_from(simd, self.min[axis]), f64x4::simd_from(simd, self.max[axis]));
+            let apart = (min - p) + (max - p);
+            sum += apart * apart;
         }
         sum
     }
@@ -94,29 +95,34 @@ impl BoxTree {
         if !boxes.is_empty() {
             build(&mut order, boxes, &mut nodes);
         }
-        Self { nodes }
+        Self { nodes, level: Level::new() }
     }
 
     /// Adds to `found` every item whose box is nearer to `p` than the square root of `limit_squared`; returns how many boxes
     /// were looked at.
     pub fn nearer_than(&self, p: DVec3, limit_squared: f64, found: &mut Vec<Candidate>) -> u64 {
+        dispatch!(self.level, simd => self.collect(simd, p, limit_squared, found))
+    }
+
+    #[inline(always)]
+    fn collect<S: Simd>(&self, simd: S, p: DVec3, limit_squared: f64, found: &mut Vec<Candidate>) -> u64 {
         let mut looked = 0;
         let mut pending: SmallVec<[u32; 64]> = SmallVec::new();
-        if !self.nodes.is_empty() {
-            pending.push(0);
-        }
-        while let Some(at) = pending.pop() {
+        let mut next = if self.nodes.is_empty() { None } else { Some(0) };
+        while let Some(at) = next {
             let node = &self.nodes[at as usize];
             looked += WIDTH as u64;
-            let distances = node.distances_squared(p);
-            for (distance_squared, child) in distances.into_iter().zip(node.children) {
-                if distance_squared < limit_squared {
-                    match child {
-                        Child::Item(item) => found.push(Candidate { distance_squared, item }),
-                        Child::Inner(node) => pending.push(node),
-                    }
+            let distances = node.distances_squared(simd, p);
+            let mut near = distances.simd_lt(limit_squared).to_bitmask();
+            while near != 0 {
+                let lane = near.trailing_zeros() as usize;
+                near &= near - 1;
+                match node.children[lane] {
+                    Child::Item(item) => found.push(Candidate { distance_squared: distances[lane], item }),
+                    Child::Inner(node) => pending.push(node),
                 }
             }
+            next = pending.pop();
         }
         looked
     }
@@ -125,11 +131,16 @@ impl BoxTree {
     /// one with the nearest middle is taken, then the first. Also returns how many boxes were looked at.
     #[must_use]
     pub fn descend(&self, p: DVec3) -> Option<(u32, u64)> {
+        dispatch!(self.level, simd => self.nearest_item(simd, p))
+    }
+
+    #[inline(always)]
+    fn nearest_item<S: Simd>(&self, simd: S, p: DVec3) -> Option<(u32, u64)> {
         let mut looked = 0;
         let mut node = self.nodes.first()?;
         loop {
             looked += WIDTH as u64;
-            let (distances, middles) = (node.distances_squared(p), node.middles_squared(p));
+            let (distances, middles) = (node.distances_squared(simd, p), node.middles_squared(simd, p));
             let mut best = 0;
             for lane in 1..WIDTH {
                 let nearer = distances[lane] < distances[best];

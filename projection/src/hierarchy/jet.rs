@@ -20,8 +20,21 @@ impl Jet {
     /// Evaluates the net of degree `(p, q)` in row order; a curve has `q = 0`. The same bits at every level: products are
     /// rounded before they are added.
     pub(super) fn at(level: Level, net: &[DVec4], degree: (usize, usize), rational: bool, s: f64, t: f64) -> Self {
+        dispatch!(level, simd => Self::within(simd, net, degree, rational, s, t))
+    }
+
+    /// The same where the level is known already.
+    #[inline(always)]
+    pub(super) fn within<S: Simd>(
+        simd: S,
+        net: &[DVec4],
+        degree: (usize, usize),
+        rational: bool,
+        s: f64,
+        t: f64,
+    ) -> Self {
         // the usual degrees with loops of known length, the others with room for the highest
-        dispatch!(level, simd => match degree {
+        match degree {
             (1, 0) => curve::<_, 2>(simd, net, 1, s).jet(rational),
             (2, 0) => curve::<_, 3>(simd, net, 2, s).jet(rational),
             (3, 0) => curve::<_, 4>(simd, net, 3, s).jet(rational),
@@ -37,7 +50,7 @@ impl Jet {
             (3, 3) => surface::<_, 4, 4>(simd, net, 3, 3, s, t).jet(rational),
             (p @ ..6, q @ ..6) => surface::<_, 6, 6>(simd, net, p, q, s, t).jet(rational),
             (p, q) => any_surface(simd, net, p, q, s, t).jet(rational),
-        })
+        }
     }
 
     /// The point.

@@ -1,5 +1,6 @@
 //! Newton's method for the nearest point of a leaf, inside a box of its parameters.
 
+use fearless_simd::{Simd, dispatch};
 use glam::DVec3;
 
 use super::jet::Jet;
@@ -108,9 +109,13 @@ struct Evaluated {
     moves: f64,
 }
 
-#[inline]
-fn evaluate(leaf: &Leaf, x: DVec3, domain: &Domain, (s, t): (f64, f64)) -> Evaluated {
-    let jet = leaf.jet(s, t);
+fn evaluate(leaf: &Leaf, x: DVec3, domain: &Domain, at: (f64, f64)) -> Evaluated {
+    dispatch!(leaf.level, simd => evaluate_within(simd, leaf, x, domain, at))
+}
+
+#[inline(always)]
+fn evaluate_within<S: Simd>(simd: S, leaf: &Leaf, x: DVec3, domain: &Domain, (s, t): (f64, f64)) -> Evaluated {
+    let jet = Jet::within(simd, &leaf.net, leaf.degree, leaf.rational, s, t);
     let r = jet.point() - x;
     let squared = r.length_squared();
     let (next, promised) = newton_step(domain, leaf.degree.1 == 0, (s, t), &jet, r);
@@ -177,13 +182,14 @@ fn residual(leaf: &Leaf, x: DVec3, Found { s, t, jet, .. }: &Found) -> f64 {
 }
 
 /// Whether a point at a border of its range would leave it downhill.
+#[inline(always)]
 fn is_held(x: f64, (from, to): (f64, f64), slope: f64) -> bool {
     (x <= from && slope >= 0.0) || (x >= to && slope <= 0.0)
 }
 
 /// Where a Newton step for half of `D = |S - x|²` leads within the box, and the decrease of half `D` that its slope promises; nowhere, and 0, where
 /// the box holds the point in every direction.
-#[inline]
+#[inline(always)]
 fn newton_step(domain: &Domain, one: bool, (s, t): (f64, f64), c: &Jet, r: DVec3) -> ((f64, f64), f64) {
     // half the gradient and half the Hessian of D
     let (ps, pss) = (c.ps.truncate(), c.pss.truncate());
@@ -215,7 +221,20 @@ fn newton_step(domain: &Domain, one: bool, (s, t): (f64, f64), c: &Jet, r: DVec3
     if (to_s, to_t) == (s + ds, t + dt) {
         return ((to_s, to_t), -(gs * ds + gt * dt));
     }
-    // the border stops a parameter: what is left of the slope there leads the other, else the step may lead uphill
+    stopped(domain, (s, t), (gs, gt), (hss, hst, htt), (ss, tt), (ds, dt))
+}
+
+/// A step that a border stops: what is left of the slope there leads the other parameter, else the step may lead uphill.
+#[inline(never)]
+fn stopped(
+    domain: &Domain,
+    (s, t): (f64, f64),
+    (gs, gt): (f64, f64),
+    (hss, hst, htt): (f64, f64, f64),
+    (ss, tt): (f64, f64),
+    (ds, dt): (f64, f64),
+) -> ((f64, f64), f64) {
+    let (to_s, to_t) = domain.clamp(s + ds, t + dt);
     let stopped_s = (to_s != s + ds).then(|| {
         let ds = to_s - s;
         (ds, domain.clamp(s, t + step(gt + hst * ds, htt, tt)).1 - t)
@@ -232,6 +251,7 @@ fn newton_step(domain: &Domain, one: bool, (s, t): (f64, f64), c: &Jet, r: DVec3
 
 /// One Newton step in one parameter. The second derivative is used wherever it is positive, however small (beside a centre of
 /// curvature it is); else its absolute value, kept away from 0 by the first derivative.
+#[inline(always)]
 fn step(g: f64, h: f64, first: f64) -> f64 {
     let h = if h > 1e-13 * first { h } else { h.abs().max(1e-3 * first) };
     if h > 0.0 { -g / h } else { 0.0 }
@@ -239,11 +259,19 @@ fn step(g: f64, h: f64, first: f64) -> f64 {
 
 /// One Newton step in two parameters. Where the Hessian is not positive, it is taken apart into its two directions (in parameters
 /// scaled to unit speed), and each makes its own step as in [`step`]: along a circle of feet that are all as near, one is flat.
+#[inline(always)]
 fn step2((gs, gt): (f64, f64), (hss, hst, htt): (f64, f64, f64), (ss, tt): (f64, f64)) -> (f64, f64) {
     let determinant = hss * htt - hst * hst;
     if hss > 0.0 && determinant > 1e-13 * ss * tt {
-        return ((gt * hst - gs * htt) / determinant, (gs * hst - gt * hss) / determinant);
+        let inverse = 1.0 / determinant;
+        return ((gt * hst - gs * htt) * inverse, (gs * hst - gt * hss) * inverse);
     }
+    step2_apart((gs, gt), (hss, hst, htt), (ss, tt))
+}
+
+/// The two directions of a Hessian that is not positive, each by itself.
+#[inline(never)]
+fn step2_apart((gs, gt): (f64, f64), (hss, hst, htt): (f64, f64, f64), (ss, tt): (f64, f64)) -> (f64, f64) {
     let (speed_s, speed_t) = (ss.sqrt(), tt.sqrt());
     if speed_s == 0.0 || speed_t == 0.0 {
         return (step(gs, hss, ss), step(gt, htt, tt));
