@@ -45,19 +45,19 @@ pub(super) fn least_from(
 
 /// The least that the squared distance from `x` can be on a box of the leaf's parameters that holds the point `found`, where `curvature` is a lower bound of
 /// its Hessian there. In a direction in which the box has no extent, curvature and slope do not matter.
+#[inline(always)]
 pub(super) fn nearest_from(leaf: &Leaf, x: DVec3, found: &Found, domain: Domain, curvature: Curvature) -> f64 {
     let Found { distance: d, s, t, jet, .. } = found;
     let offset = jet.point() - x;
     let mut bound = d * d - square_error(leaf, *d);
-    let mut along = |derivative: DVec3, degree: usize, curvature: f64, at: f64, (from, to): (f64, f64)| {
-        let error = slope_error(leaf, *d, derivative, degree);
-        bound += convex::descent(2.0 * offset.dot(derivative), error, curvature, from - at, to - at);
-    };
-    if domain.s.0 < domain.s.1 {
-        along(jet.ps.truncate(), leaf.degree.0, curvature.s, *s, domain.s);
-    }
-    if domain.t.0 < domain.t.1 {
-        along(jet.pt.truncate(), leaf.degree.1, curvature.t, *t, domain.t);
+    for (derivative, degree, curvature, at, (from, to)) in [
+        (jet.ps.truncate(), leaf.degree.0, curvature.s, *s, domain.s),
+        (jet.pt.truncate(), leaf.degree.1, curvature.t, *t, domain.t),
+    ] {
+        if from < to {
+            let error = slope_error(leaf, *d, derivative, degree);
+            bound += convex::descent(2.0 * offset.dot(derivative), error, curvature, from - at, to - at);
+        }
     }
     bound
 }
@@ -66,12 +66,14 @@ pub(super) fn nearest_from(leaf: &Leaf, x: DVec3, found: &Found, domain: Domain,
 ///
 /// With `c = 3 (p + q) + 8`, `A` errs by at most `c u r W` and `w` by `c u W` (as in [`value_error`]), so `S = A / w` by `e = (2 c rho + 2) u r`, `rho` being the ratio
 /// of the weights. Hence `2 d e + e²`, and `8 u d²` for the difference and its square.
+#[inline(always)]
 pub(super) fn square_error(leaf: &Leaf, d: f64) -> f64 {
     let e = point_error(leaf);
     2.0 * d * e + e * e + 8.0 * ROUNDING * d * d
 }
 
 /// The error `e` of an evaluated point of the leaf.
+#[inline(always)]
 fn point_error(leaf: &Leaf) -> f64 {
     let (p, q) = leaf.degree;
     let c = (3 * (p + q) + 8) as f64;
@@ -82,6 +84,7 @@ fn point_error(leaf: &Leaf) -> f64 {
 ///
 /// `A_s` errs by at most `2 n c u r W` and `w_s`, which is at most `2 n W`, by `2 n c u W`; so `S_s = (A_s - w_s S) / w` errs by at most
 /// `2 n u r rho (2 c + 2 c rho + 14)`, and the product by `8 u d |S_s|` more.
+#[inline(always)]
 fn slope_error(leaf: &Leaf, d: f64, derivative: DVec3, degree: usize) -> f64 {
     let (p, q) = leaf.degree;
     let (c, rho) = ((3 * (p + q) + 8) as f64, leaf.heaviest / leaf.lightest);

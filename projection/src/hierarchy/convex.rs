@@ -187,6 +187,7 @@ fn by_matrices<S: Simd>(simd: S, patch: Patch<'_>, size: impl Extent, scratch: &
 /// The least of `slope d + curvature d² / 2` over `d` in `[from, to]`, where the slope is known to within `error`.
 ///
 /// `from <= 0 <= to`; the result is at most 0.
+#[inline(always)]
 pub(super) fn descent(slope: f64, error: f64, curvature: f64, from: f64, to: f64) -> f64 {
     let least = |slope: f64, from: f64, to: f64| {
         let d = if curvature > 0.0 {

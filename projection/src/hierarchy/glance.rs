@@ -3,6 +3,8 @@
 //! Where the slopes' signs tell on which edge or corner the leaf is nearest, only that remains. A corner is a control point. Elsewhere, where
 //! the ranges show the squared distance convex, a point from Newton's method bounds it from below ([`bound`](super::bound)).
 
+use fearless_simd::{Simd, dispatch};
+
 use super::bound::{nearest_from, square_error};
 use super::certify::Part;
 use super::newton::{self, Domain, Search};
@@ -15,6 +17,11 @@ const EVALUATIONS: u32 = 8;
 ///
 /// The first leaf of a query is searched also where it is not shown convex: it gives the first upper bound.
 pub(super) fn closes(part: Part<'_>, first: bool, state: &mut State<'_>) -> bool {
+    dispatch!(part.leaf.level, simd => closes_within(simd, part, first, state))
+}
+
+#[inline(always)]
+fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut State<'_>) -> bool {
     let leaf = part.leaf;
     let x = state.point - leaf.origin;
     let ranges = &leaf.opened().ranges;
@@ -38,7 +45,7 @@ pub(super) fn closes(part: Part<'_>, first: bool, state: &mut State<'_>) -> bool
     let search = Search { domain, start: domain.clamp(s, t), evaluations: EVALUATIONS, decrease };
     let (upper, goal) = (state.best.distance, state.goal);
     let mut closed = false;
-    let found = newton::search(leaf, x, search, &mut state.done, |found| {
+    let found = newton::search_within(simd, leaf, x, search, &mut state.done, #[inline(always)] |found| {
         let tau = goal.tau(found.distance.min(upper));
         closed = curvature.is_some_and(|curvature| nearest_from(leaf, x, found, domain, curvature) >= tau * tau);
         closed

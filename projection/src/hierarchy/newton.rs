@@ -59,39 +59,50 @@ pub(super) fn search(
     x: DVec3,
     search: Search,
     done: &mut Work,
+    visit: impl FnMut(&Found) -> bool,
+) -> Found {
+    dispatch!(leaf.level, simd => search_within(simd, leaf, x, search, done, visit))
+}
+
+/// The same where the level is known already.
+#[inline(always)]
+pub(super) fn search_within<S: Simd>(
+    simd: S,
+    leaf: &Leaf,
+    x: DVec3,
+    search: Search,
+    done: &mut Work,
     mut visit: impl FnMut(&Found) -> bool,
 ) -> Found {
-    let Search { domain, start, evaluations, decrease } = search;
-    let mut best = evaluate(leaf, x, &domain, start);
-    let mut evaluated = 1;
-    'improving: loop {
-        if visit(&best.found) || best.promised <= decrease || best.moves < 1e-15 {
-            break;
-        }
-        let least = best.squared;
-        let (mut s, mut t) = best.found.next;
-        loop {
-            if evaluated >= evaluations {
-                break 'improving;
+    let Search { domain, start: (mut s, mut t), evaluations, decrease } = search;
+    let mut evaluated = 0;
+    let mut best: Option<Evaluated> = None;
+    while evaluated < evaluations.max(1) {
+        let there = evaluate_within(simd, leaf, x, &domain, (s, t));
+        evaluated += 1;
+        match &best {
+            Some(best) if there.squared >= best.squared => {
+                // halve back towards the best point, unless there is nothing left to gain beside rounding
+                let (half_s, half_t) = (0.5 * (s + best.found.s), 0.5 * (t + best.found.t));
+                let close = (half_s - s).abs() + (half_t - t).abs() < 1e-15;
+                if close || there.squared - best.squared <= decrease.max(8.0 * ROUNDING * best.squared) {
+                    break;
+                }
+                (s, t) = (half_s, half_t);
             }
-            evaluated += 1;
-            let there = evaluate(leaf, x, &domain, (s, t));
-            if there.squared < least {
-                best = there;
-                break;
+            _ => {
+                let (promised, moves) = (there.promised, there.moves);
+                (s, t) = there.found.next;
+                let closed = visit(&best.insert(there).found);
+                if closed || promised <= decrease || moves < 1e-15 {
+                    break;
+                }
             }
-            // halve back towards the best point, unless there is nothing left to gain beside rounding
-            let (half_s, half_t) = (0.5 * (s + best.found.s), 0.5 * (t + best.found.t));
-            let close = (half_s - s).abs() + (half_t - t).abs() < 1e-15;
-            if close || there.squared - least <= decrease.max(8.0 * ROUNDING * least) {
-                break 'improving;
-            }
-            (s, t) = (half_s, half_t);
         }
     }
     done.evaluations += u64::from(evaluated);
     done.newton += u64::from(evaluated);
-    best.found
+    best.expect("the start is a point").found
 }
 
 /// The point of a leaf at these parameters.
