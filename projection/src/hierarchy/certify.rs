@@ -105,7 +105,7 @@ impl Part<'_> {
         let domain = Domain::WHOLE;
         let decrease = 1e-3 * state.margin();
         let search = Search { domain, start: domain.clamp(s, t), evaluations: 8, decrease };
-        let found = newton::search(self.leaf, x, search, &mut state.done, |_| false);
+        let found = newton::search(self.leaf, x, search, &mut state.done, &mut |_| false);
         self.offer(&found, state);
     }
 
@@ -291,7 +291,7 @@ impl Proof<'_> {
         let search = Search { domain: cell.domain, start, evaluations: 16, decrease: 1e-3 * state.margin() };
         let (upper, goal, formed) = (state.best.distance, state.goal, self.formed);
         let mut closed = false;
-        let found = newton::search(leaf, self.x, search, &mut state.done, |found| {
+        let found = newton::search(leaf, self.x, search, &mut state.done, &mut |found| {
             let tau = goal.tau(found.distance.min(upper));
             if leaf.rational && tau < formed - 0.5 * goal.gap {
                 return false; // the form will be made again
@@ -324,7 +324,7 @@ impl Proof<'_> {
         let start = (cell.domain.s.0 + extent_s * share(i, m), cell.domain.t.0 + extent_t * share(j, n));
         let decrease = 1e-2 * state.margin();
         let search = Search { domain: cell.domain, start, evaluations: 8, decrease };
-        let found = newton::search(self.part.leaf, self.x, search, &mut state.done, |_| false);
+        let found = newton::search(self.part.leaf, self.x, search, &mut state.done, &mut |_| false);
         self.part.offer(&found, state);
     }
 

@@ -59,7 +59,7 @@ pub(super) fn search(
     x: DVec3,
     search: Search,
     done: &mut Work,
-    visit: impl FnMut(&Found) -> bool,
+    visit: &mut dyn FnMut(&Found) -> bool,
 ) -> Found {
     dispatch!(leaf.level, simd => search_within(simd, leaf, x, search, done, visit))
 }
@@ -151,35 +151,48 @@ pub(super) struct Polished {
 /// steps are taken while that falls. Every point is evaluated at parameters that the definition's own round to, so that
 /// the last is the answer.
 pub(super) fn polish(leaf: &Leaf, x: DVec3, foot: &Foot, done: &mut Work) -> Polished {
-    let mut evaluate = |at: (f64, f64)| {
+    dispatch!(leaf.level, simd => polish_within(simd, leaf, x, foot, done))
+}
+
+#[inline(always)]
+fn polish_within<S: Simd>(simd: S, leaf: &Leaf, x: DVec3, foot: &Foot, done: &mut Work) -> Polished {
+    let noise = |distance: f64| 4.0 * ROUNDING * (distance + leaf.radius);
+    let mut at = foot.next;
+    let mut best: Option<(Polished, f64)> = None;
+    for _ in 0..POLISHING {
         done.evaluations += 1;
         let (u, v) = leaf.parameters(at.0, at.1);
-        let Evaluated { found, .. } = evaluate(leaf, x, &Domain::WHOLE, leaf.own_parameters(u, v));
-        (Polished { u, v, found }, residual(leaf, x, &found))
-    };
-    let noise = |distance: f64| 4.0 * ROUNDING * (distance + leaf.radius);
-    let (mut best, mut left) = evaluate(foot.next);
-    if best.found.distance > foot.distance + noise(foot.distance) {
-        (best, left) = evaluate((foot.s, foot.t));
-    }
-    for _ in 0..POLISHING {
-        let rests = best.found.next == (best.found.s, best.found.t);
-        if rests || left <= squared(noise(best.found.distance)) {
+        let Evaluated { found, .. } = evaluate_within(simd, leaf, x, &Domain::WHOLE, leaf.own_parameters(u, v));
+        let left = residual(leaf, x, &found);
+        match &best {
+            None if found.distance > foot.distance + noise(foot.distance) && at != (foot.s, foot.t) => {
+                // the step led farther away: the foot itself, then
+                at = (foot.s, foot.t);
+                continue;
+            }
+            Some((best, before)) => {
+                let farther = found.distance > best.found.distance + noise(best.found.distance);
+                if left >= *before || farther {
+                    break;
+                }
+            }
+            None => {}
+        }
+        at = found.next;
+        let rests = at == (found.s, found.t) || left <= squared(noise(found.distance));
+        best = Some((Polished { u, v, found }, left));
+        if rests {
             break;
         }
-        let (there, left_there) = evaluate(best.found.next);
-        if left_there >= left || there.found.distance > best.found.distance + noise(best.found.distance) {
-            break;
-        }
-        (best, left) = (there, left_there);
     }
-    best
+    best.expect("the foot itself is no farther than itself").0
 }
 
 /// Steps of [`polish`]: from where a search ends, Newton's method needs one or two; a flat minimum is approached by a factor.
 const POLISHING: u32 = 10;
 
 /// The squared length of the part of `S - x` along the directions in which a point of the leaf may still move.
+#[inline(always)]
 fn residual(leaf: &Leaf, x: DVec3, Found { s, t, jet, .. }: &Found) -> f64 {
     // a slower direction is one of rounding: a pole has none along its edge
     let slowest = squared(64.0 * ROUNDING * leaf.radius);

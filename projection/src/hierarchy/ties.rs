@@ -243,7 +243,7 @@ impl Hierarchy {
 fn converge(leaf: &Leaf, x: DVec3, domain: Domain, start: (f64, f64), state: &mut State<'_>) -> Found {
     // a flat minimum is approached by a constant factor only: many iterations, and no early end
     let search = Search { domain, start, evaluations: 100, decrease: 0.0 };
-    newton::search(leaf, x, search, &mut state.done, |_| false)
+    newton::search(leaf, x, search, &mut state.done, &mut |_| false)
 }
 
 /// Whether the form is convex on the box, and rises so fast that its points below the threshold take up no more than
