@@ -17,7 +17,8 @@
 //! 4. **Convex**: with `H >= diag(a, c)` on the box and any point `x0` of it,
 //!    `G >= G(x0) + min (Gs ds + a ds²/2) + min (Gt dt + c dt²/2)` over the steps that stay in the box. At the corners value and gradient are
 //!    coefficients; elsewhere they are evaluated, with errors of their own ([`bound`](super::bound)).
-//! 5. else the box is split.
+//! 5. **Valley**: convex in one direction, and level enough in the other ([`valley`](super::valley)). Only where a foot was sought and found no nearer.
+//! 6. else the box is split.
 //!
 //! Reductions may give away a tenth of the margin that the form has at a foot; whether they gave too much, the closing test decides.
 
@@ -32,6 +33,7 @@ use super::leaf::Leaf;
 use super::net::{self, Edge, Layout};
 use super::newton::{self, Domain, Found, Search};
 use super::state::{Foot, State};
+use super::valley;
 
 /// Working memory: the nets of all boxes that wait, the boxes, and the matrices of the convexity test.
 #[derive(Debug, Default)]
@@ -39,6 +41,7 @@ pub(super) struct Memory {
     nets: Vec<f64>,
     cells: Vec<Cell>,
     matrices: Vec<f64>,
+    line: Vec<f64>,
 }
 
 /// A box of the leaf that waits for its proof.
@@ -130,7 +133,7 @@ pub(super) enum Outcome {
 pub(super) fn certify(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory, share: u32, last: bool) -> Outcome {
     let leaf = part.leaf;
     let x = state.point - leaf.origin;
-    let mut proof = Proof { part, x, formed: 0.0, tried: false };
+    let mut proof = Proof { part, x, formed: 0.0, tried: false, found: leaf.linear_guess(x) };
     proof.restart(state, memory);
     let mut splits = 0;
     while let Some(cell) = memory.cells.pop() {
@@ -181,6 +184,8 @@ struct Proof<'a> {
     formed: f64,
     /// Whether Newton's method was tried from inside the leaf.
     tried: bool,
+    /// What it found there, in the leaf's parameters.
+    found: (f64, f64),
 }
 
 impl Proof<'_> {
@@ -242,7 +247,30 @@ impl Proof<'_> {
                 return Verdict::Again(cell);
             }
         }
+        if self.valley_closes(cell, threshold, memory) {
+            return Verdict::Closed;
+        }
         Verdict::Open { least }
+    }
+
+    /// Test 5, along the lines of the point that Newton's method found in the leaf. The whole leaf is split first: most forms need no more.
+    fn valley_closes(&self, cell: Cell, threshold: f64, memory: &mut Memory) -> bool {
+        let Layout { m, n } = cell.layout;
+        let (extent_s, extent_t) = cell.extent();
+        if m == 0 || n == 0 || extent_s * extent_t == 1.0 {
+            return false;
+        }
+        let g = &memory.nets[cell.offset..cell.offset + cell.layout.len()];
+        let rounding = (cell.rounding, net::largest(self.part.leaf.level, g, cell.layout));
+        let share = |x: f64, from: f64, extent: f64| ((x - from) / extent).clamp(0.0, 1.0);
+        let lines = [
+            (true, share(self.found.0, cell.domain.s.0, extent_s)),
+            (false, share(self.found.1, cell.domain.t.0, extent_t)),
+        ];
+        lines.into_iter().any(|(in_s, at)| {
+            let bound = valley::least_beside((g, cell.layout), in_s, at, rounding, &mut memory.line);
+            bound.is_some_and(|bound| bound > threshold + cell.slack)
+        })
     }
 
     /// A box that is only just positive may hold a foot as near as the best, within the gap.
@@ -281,7 +309,7 @@ impl Proof<'_> {
     }
 
     /// Test 4 away from the corners: Newton's method inside the box, the bound tested at every iterate.
-    fn newton_closes(&self, cell: Cell, curvature: Curvature, state: &mut State<'_>) -> bool {
+    fn newton_closes(&mut self, cell: Cell, curvature: Curvature, state: &mut State<'_>) -> bool {
         let leaf = self.part.leaf;
         // from the best point, if it lies in the box
         let best = state.best;
@@ -300,6 +328,7 @@ impl Proof<'_> {
             closed = self.bound_from(found, cell, curvature, tau) > 0.0;
             closed
         });
+        self.found = found.next;
         self.part.offer(&found, state);
         closed
     }
@@ -310,7 +339,7 @@ impl Proof<'_> {
     }
 
     /// Newton's method from where the least coefficient has its Greville point: it may find a nearer point.
-    fn newton_from_least(&self, cell: Cell, g: &[f64], least: f64, state: &mut State<'_>) {
+    fn newton_from_least(&mut self, cell: Cell, g: &[f64], least: f64, state: &mut State<'_>) {
         let Layout { m, n } = cell.layout;
         let at = g.iter().position(|x| *x == least).unwrap_or_default();
         let (row, column) = (at / cell.layout.stride(), at % cell.layout.stride());
@@ -325,6 +354,7 @@ impl Proof<'_> {
         let decrease = 1e-2 * state.margin();
         let search = Search { domain: cell.domain, start, evaluations: 8, decrease };
         let found = newton::search(self.part.leaf, self.x, search, &mut state.done, &mut |_| false);
+        self.found = found.next;
         self.part.offer(&found, state);
     }
 

@@ -34,6 +34,7 @@ mod ranges;
 mod reply;
 mod state;
 mod ties;
+mod valley;
 mod walk;
 
 use std::sync::OnceLock;

@@ -145,7 +145,7 @@ impl Piece {
         if heaviest > 16.0 * lightest {
             *(if u.weights >= v.weights { &mut bend_u } else { &mut bend_v }) += 1.0;
         }
-        let threshold = if q == 0 { 1.0 } else { 0.8 * self.sine_of_skew() };
+        let threshold = if q == 0 { 0.7 } else { 0.8 * self.sine_of_skew() };
         let largest = bend_u.max(bend_v);
         (largest > threshold).then_some(if bend_u >= bend_v { Direction::U } else { Direction::V })
     }
