@@ -32,6 +32,114 @@ pub(crate) fn functions<const R: usize>(knots: &KnotVector, span: usize, u: f64)
     values
 }
 
+/// Degrees up to this one, of nearly all definitions, are evaluated by loops of known length.
+pub(crate) const LOW_DEGREE: usize = 5;
+
+/// Row `k` holds the `k`-th derivatives of the basis functions of degree `N - 1` on span `span`, at `u`, for `k < D`; `D` is at most 3.
+///
+/// A derivative is made of the quotients that the recursion for the values divides anyway (The NURBS Book, equation 2.7): as accurate as
+/// [`derivatives`].
+#[inline]
+pub(crate) fn low<const N: usize, const D: usize>(knots: &KnotVector, span: usize, u: f64) -> [[f64; N]; D] {
+    let p = N - 1;
+    let t = &knots.as_slice()[span + 1 - p..=span + p];
+    let (mut left, mut right) = ([0.0; N], [0.0; N]);
+    for j in 1..N {
+        left[j] = u - t[p - j];
+        right[j] = t[p + j - 1] - u;
+    }
+    let mut rows = [[0.0; N]; D];
+    // of the last step: each function of a degree less over the width that it is extended by; of the step before, the same
+    let (mut shares, mut before, mut widths) = ([0.0; N], [0.0; N], [1.0; N]);
+    rows[0][0] = 1.0;
+    for j in 1..N {
+        let mut saved = 0.0;
+        before = shares;
+        for r in 0..j {
+            widths[r] = right[r + 1] + left[j - r];
+            shares[r] = rows[0][r] / widths[r];
+            rows[0][r] = saved + right[r + 1] * shares[r];
+            saved = left[j - r] * shares[r];
+        }
+        rows[0][j] = saved;
+    }
+    // the derivatives of functions of a degree, from the quotients of those of a degree less
+    let slope = |degree: usize, shares: &[f64; N], r: usize| {
+        let (rises, falls) = (if r > 0 { shares[r - 1] } else { 0.0 }, if r < degree { shares[r] } else { 0.0 });
+        degree as f64 * (rises - falls)
+    };
+    if D > 1 {
+        rows[1] = std::array::from_fn(|r| slope(p, &shares, r));
+    }
+    if D > 2 {
+        let slopes = std::array::from_fn(|r| if r < p { slope(p - 1, &before, r) / widths[r] } else { 0.0 });
+        rows[2] = std::array::from_fn(|r| slope(p, &slopes, r));
+    }
+    // where the span interpolates a control point, the recursion gets 1 only up to rounding
+    if left[p] == 0.0 || right[p] == 0.0 {
+        rows[0] = [0.0; N];
+        rows[0][if left[p] == 0.0 { 0 } else { p }] = 1.0;
+    }
+    rows
+}
+
+/// As [`low`], with one division in all where the span is a Bézier segment. It pays on curves; on surfaces the quotients of both directions
+/// overlap, and it does not.
+#[inline]
+pub(crate) fn low_on_curve<const N: usize, const D: usize>(knots: &KnotVector, span: usize, u: f64) -> [[f64; N]; D] {
+    let t = &knots.as_slice()[span + 2 - N..span + N];
+    let (start, end) = (t[N - 2], t[N - 1]);
+    if t[0] == start && t[2 * N - 3] == end { bernstein(start, end, u) } else { low(knots, span, u) }
+}
+
+/// The Bernstein polynomials of degree `N - 1` from `start` to `end`, with derivatives as in [`low`].
+#[inline]
+fn bernstein<const N: usize, const D: usize>(start: f64, end: f64, u: f64) -> [[f64; N]; D] {
+    let p = N - 1;
+    let inverse = 1.0 / (end - start);
+    // exactly 0 and 1 at both ends
+    let share = if u == end { 1.0 } else { (u - start) * inverse };
+    let other = if u == start { 1.0 } else { (end - u) * inverse };
+    let mut rows = [[0.0; N]; D];
+    // the polynomials of one and of two degrees less
+    let (mut lower, mut lowest) = ([0.0; N], [0.0; N]);
+    let mut values = [0.0; N];
+    values[0] = 1.0;
+    for j in 1..N {
+        (lowest, lower) = (lower, values);
+        values[j] = share * lower[j - 1];
+        for r in (1..j).rev() {
+            values[r] = other * lower[r] + share * lower[r - 1];
+        }
+        values[0] = other * lower[0];
+    }
+    rows[0] = values;
+    let at = |values: &[f64; N], r: usize, less: usize| if r >= less { values[r - less] } else { 0.0 };
+    if D > 1 {
+        let slope = p as f64 * inverse;
+        rows[1] = std::array::from_fn(|r| slope * (at(&lower, r, 1) - at(&lower, r, 0)));
+    }
+    if D > 2 {
+        let bend = (p * (p - 1)) as f64 * inverse * inverse;
+        let difference = |r| at(&lowest, r, 2) - 2.0 * at(&lowest, r, 1) + at(&lowest, r, 0);
+        rows[2] = std::array::from_fn(|r| bend * difference(r));
+    }
+    rows
+}
+
+/// The sum of all terms, each with its share.
+#[inline]
+pub(crate) fn sum<P, const N: usize>(shares: &[f64; N], term: impl Fn(usize) -> P) -> P
+where
+    P: std::ops::AddAssign + std::ops::Mul<f64, Output = P>,
+{
+    let mut sum = term(0) * shares[0];
+    for (i, share) in shares.iter().enumerate().skip(1) {
+        sum += term(i) * *share;
+    }
+    sum
+}
+
 /// Rows `k = 0..=order` of `table` become the `k`-th derivatives of the basis functions on `span` at `u`;
 /// `order` is at most the degree.
 ///
@@ -127,6 +235,40 @@ mod tests {
         for row in &table[1..=3] {
             assert!(row[..=3].iter().sum::<f64>().abs() < 1e-11, "derivatives of a partition of unity add up to 0");
         }
+    }
+
+    #[test]
+    fn functions_of_known_degree_are_those_of_any() {
+        fn compare<const N: usize>() {
+            let p = N - 1;
+            for inside in [vec![], vec![0.3, 0.5, 0.5], vec![0.4; p]] {
+                let t = [vec![0.0; N], inside, vec![1.0; N]].concat();
+                let points = t.len() - N;
+                let knots = KnotVector::new(p, t, points, Along::Curve);
+                // a double knot is one too many for the lowest degree
+                let Ok(knots) = knots else { continue };
+                for k in 0..=40 {
+                    let u = f64::from(k) / 40.0;
+                    let span = knots.find_span(u);
+                    let mut table = [[0.0; ROOM]; ROOM];
+                    derivatives(&knots, span, u, 2.min(p), &mut table);
+                    let values = functions::<ROOM>(&knots, span, u);
+                    for rows in [low::<N, 3>(&knots, span, u), low_on_curve::<N, 3>(&knots, span, u)] {
+                        for (row, expected) in rows.iter().zip(&table) {
+                            let largest = expected.iter().fold(0.0_f64, |largest, b| largest.max(b.abs()));
+                            assert!((0..N).all(|r| (row[r] - expected[r]).abs() <= 1e-14 * largest), "{p} {u}");
+                        }
+                        // exactly 1 where a control point is met
+                        assert!((0..N).all(|r| values[r] != 1.0 || rows[0][r] == 1.0), "{p} {u}");
+                    }
+                }
+            }
+        }
+        compare::<2>();
+        compare::<3>();
+        compare::<4>();
+        compare::<5>();
+        compare::<6>();
     }
 
     #[test]

@@ -3,10 +3,10 @@
 use glam::{DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
-use crate::basis::{self, ROOM};
+use crate::basis::{self, LOW_DEGREE, ROOM};
 use crate::bounds::Aabb;
 use crate::clamp::{self, Entry};
-use crate::homogeneous::{cartesian, homogeneous, rational_derivatives};
+use crate::homogeneous::{cartesian, homogeneous, rational_derivatives, rational_low_derivatives};
 use crate::invalid::{Along, InvalidDefinition, PointIndex};
 use crate::knots::KnotVector;
 
@@ -103,30 +103,35 @@ impl NurbsCurve {
 
     /// The degree.
     #[must_use]
+    #[inline]
     pub fn degree(&self) -> usize {
         self.knots.degree()
     }
 
     /// The knot vector.
     #[must_use]
+    #[inline]
     pub fn knots(&self) -> &KnotVector {
         &self.knots
     }
 
     /// The control points.
     #[must_use]
+    #[inline]
     pub fn control_points(&self) -> &[DVec3] {
         &self.control_points
     }
 
     /// The weights, one a control point; none where all are 1.
     #[must_use]
+    #[inline]
     pub fn weights(&self) -> Option<&[f64]> {
         self.weights.as_deref()
     }
 
     /// The first and the last parameter.
     #[must_use]
+    #[inline]
     pub fn domain(&self) -> (f64, f64) {
         self.knots.domain()
     }
@@ -151,12 +156,16 @@ impl NurbsCurve {
     #[must_use]
     pub fn point(&self, u: f64) -> DVec3 {
         match self.degree() {
-            0..=3 => self.point_with_room::<4>(u),
-            4..=7 => self.point_with_room::<8>(u),
+            0..=LOW_DEGREE => {
+                let u = self.knots.clamp(u);
+                self.low_derivatives::<1>(u, self.knots.find_span(u))[0]
+            }
+            6..=7 => self.point_with_room::<8>(u),
             _ => self.point_with_room::<ROOM>(u),
         }
     }
 
+    #[inline(never)]
     fn point_with_room<const R: usize>(&self, u: f64) -> DVec3 {
         let u = self.knots.clamp(u);
         let (p, span) = (self.degree(), self.knots.find_span(u));
@@ -199,13 +208,47 @@ impl NurbsCurve {
         if out.is_empty() {
             return;
         }
-        match self.degree() {
-            0..=3 => self.derivatives_with_room::<4>(u, span, out),
-            4..=7 => self.derivatives_with_room::<8>(u, span, out),
+        match (self.degree(), out.len()) {
+            (0..=LOW_DEGREE, 1) => out.copy_from_slice(&self.low_derivatives::<1>(u, span)),
+            (0..=LOW_DEGREE, 2) => out.copy_from_slice(&self.low_derivatives::<2>(u, span)),
+            (0..=LOW_DEGREE, 3) => out.copy_from_slice(&self.low_derivatives::<3>(u, span)),
+            (0..=7, _) => self.derivatives_with_room::<8>(u, span, out),
             _ => self.derivatives_with_room::<ROOM>(u, span, out),
         }
     }
 
+    /// The derivatives of orders less than `D`, which is at most 3; the degree is low.
+    fn low_derivatives<const D: usize>(&self, u: f64, span: usize) -> [DVec3; D] {
+        match self.degree() {
+            1 => self.low_derivatives_of::<2, D>(u, span),
+            2 => self.low_derivatives_of::<3, D>(u, span),
+            3 => self.low_derivatives_of::<4, D>(u, span),
+            4 => self.low_derivatives_of::<5, D>(u, span),
+            _ => self.low_derivatives_of::<6, D>(u, span),
+        }
+    }
+
+    /// As [`low_derivatives`](Self::low_derivatives), of degree `N - 1`.
+    #[inline]
+    fn low_derivatives_of<const N: usize, const D: usize>(&self, u: f64, span: usize) -> [DVec3; D] {
+        let functions = basis::low_on_curve::<N, D>(&self.knots, span, u);
+        let points = &self.control_points[span + 1 - N..][..N];
+        match &self.weights {
+            None => functions.map(|row| points.iter().zip(row).fold(DVec3::ZERO, |sum, (point, b)| sum + b * *point)),
+            Some(weights) => {
+                let weights = &weights[span + 1 - N..][..N];
+                let mut form = [DVec4::ZERO; D];
+                for (j, (point, w)) in points.iter().zip(weights).enumerate() {
+                    let point = homogeneous(*point, *w);
+                    (0..D).for_each(|k| form[k] += functions[k][j] * point);
+                }
+                rational_low_derivatives(&form)
+            }
+        }
+    }
+
+    // not part of the callers: its tables would be cleared, page by page, on the way to every other degree
+    #[inline(never)]
     fn derivatives_with_room<const R: usize>(&self, u: f64, span: usize, out: &mut [DVec3]) {
         let p = self.degree();
         let order = p.min(out.len() - 1);

@@ -8,11 +8,20 @@ use crate::invalid::{Along, InvalidDefinition};
 /// The highest degree of a definition. Evaluation keeps its working memory on the stack, sized by this.
 pub const MAX_DEGREE: usize = 25;
 
+/// Interior knots up to this number are looked at one by one when a span is sought.
+const FEW: usize = 8;
+
 /// A clamped knot vector with its degree.
 #[derive(Debug, Clone, PartialEq)]
 pub struct KnotVector {
     degree: usize,
     knots: Vec<f64>,
+    /// The first and the last parameter, beside the knots: every evaluation asks for them.
+    domain: (f64, f64),
+    /// How many interior knots lie in the buckets before each of those that cut the domain evenly; empty where the knots are few.
+    buckets: Vec<u32>,
+    /// Buckets per parameter.
+    density: f64,
 }
 
 /// A non-empty knot span `[start, end]`.
@@ -44,7 +53,7 @@ impl KnotVector {
     /// refused here (definitions clamp them first, see [`crate::clamp`]).
     pub fn new(degree: usize, knots: Vec<f64>, points: usize, along: Along) -> Result<Self, InvalidDefinition> {
         check_order(degree, &knots, points, along)?;
-        let vector = Self { degree, knots };
+        let vector = Self::of(degree, knots);
         let (first, last) = vector.domain();
         for (knot, multiplicity) in vector.distinct() {
             if knot == first || knot == last {
@@ -58,11 +67,42 @@ impl KnotVector {
         Ok(vector)
     }
 
+    fn of(degree: usize, knots: Vec<f64>) -> Self {
+        let domain = (knots[degree], knots[knots.len() - degree - 1]);
+        let interior = knots.len() - 2 * (degree + 1);
+        let mut vector = Self { degree, knots, domain, buckets: Vec::new(), density: 0.0 };
+        if interior > FEW {
+            vector.density = interior as f64 / (domain.1 - domain.0);
+            let mut buckets = vec![0; interior + 2];
+            for knot in vector.interior() {
+                buckets[vector.bucket(*knot) + 1] += 1;
+            }
+            for k in 1..buckets.len() {
+                buckets[k] += buckets[k - 1];
+            }
+            vector.buckets = buckets;
+        }
+        vector
+    }
+
+    /// The knots inside the domain.
+    #[inline]
+    fn interior(&self) -> &[f64] {
+        &self.knots[self.degree + 1..self.knots.len() - self.degree - 1]
+    }
+
+    /// The bucket of a parameter of the domain, at most the number of interior knots: it never falls where the parameter rises, since neither
+    /// a rounded difference nor a rounded product does.
+    #[inline]
+    fn bucket(&self, u: f64) -> usize {
+        ((u - self.domain.0) * self.density) as usize
+    }
+
     /// The knots of one Bézier segment over `[start, end]`: each end `degree + 1` times.
     pub(crate) fn bezier(degree: usize, start: f64, end: f64) -> Self {
         let mut knots = vec![start; degree + 1];
         knots.extend(std::iter::repeat_n(end, degree + 1));
-        Self { degree, knots }
+        Self::of(degree, knots)
     }
 
     /// For results of algorithms that keep a valid vector valid.
@@ -71,51 +111,72 @@ impl KnotVector {
             Self::new(degree, knots.clone(), knots.len() - degree - 1, Along::Curve).is_ok(),
             "an algorithm of this crate made an invalid knot vector: {knots:?} of degree {degree}"
         );
-        Self { degree, knots }
+        Self::of(degree, knots)
     }
 
     /// The degree.
     #[must_use]
+    #[inline]
     pub fn degree(&self) -> usize {
         self.degree
     }
 
     /// All knots, repeated ones included.
     #[must_use]
+    #[inline]
     pub fn as_slice(&self) -> &[f64] {
         &self.knots
     }
 
     /// How many control points the vector carries.
     #[must_use]
+    #[inline]
     pub fn point_count(&self) -> usize {
         self.knots.len() - self.degree - 1
     }
 
     /// The first and the last parameter.
     #[must_use]
+    #[inline]
     pub fn domain(&self) -> (f64, f64) {
-        (self.knots[self.degree], self.knots[self.point_count()])
+        self.domain
     }
 
     /// The parameter of the domain nearest to `u`.
     #[must_use]
+    #[inline]
     pub fn clamp(&self, u: f64) -> f64 {
         let (first, last) = self.domain();
-        u.max(first).min(last)
+        // comparisons that a processor has as one instruction each, unlike `max` and `min` with their rule for NaN; here that becomes the first
+        let above = if u > first { u } else { first };
+        if above < last { above } else { last }
     }
 
     /// Index of the non-empty span that holds `u`; parameters outside the domain belong to its first or last span.
-    ///
-    /// The NURBS Book, algorithm A2.1.
     #[must_use]
+    #[inline]
     pub fn find_span(&self, u: f64) -> usize {
-        let (low, high) = (self.degree, self.point_count());
-        if u >= self.knots[high] {
-            return high - 1; // the knots after it are all the last one, so this span is not empty
+        if u >= self.domain.1 {
+            return self.point_count() - 1; // the knots after it are all the last one, so this span is not empty
         }
-        let inside = &self.knots[low..=high];
-        (low + inside.partition_point(|knot| *knot <= u)).saturating_sub(1).max(low)
+        if self.buckets.is_empty() {
+            // in steps, not by counting: which way they go the processor guesses, mostly right, and works on meanwhile
+            let mut span = self.degree;
+            while self.knots[span + 1] <= u {
+                span += 1;
+            }
+            return span;
+        }
+        // all knots of the buckets before that of `u` are below it, and none of the buckets after
+        let bucket = self.bucket(u);
+        let (start, end) = (self.buckets[bucket] as usize, self.buckets[bucket + 1] as usize);
+        let inside = &self.interior()[start..end];
+        let passed = if inside.len() <= FEW {
+            inside.iter().map(|knot| usize::from(*knot <= u)).sum()
+        } else {
+            inside.partition_point(|knot| *knot <= u)
+        };
+        self.degree + start + passed
     }
 
     /// Every distinct knot with its multiplicity, in ascending order.
@@ -192,6 +253,21 @@ mod tests {
         let knots = vector(2, &[0.0, 0.0, 0.0, 1.0, 2.0, 2.0, 3.0, 3.0, 3.0]);
         for (u, span) in [(-1.0, 2), (0.0, 2), (0.5, 2), (1.0, 3), (1.5, 3), (2.0, 5), (2.9, 5), (3.0, 5), (4.0, 5)] {
             assert_eq!(knots.find_span(u), span, "u = {u}");
+        }
+    }
+
+    #[test]
+    fn spans_among_many_knots_are_those_of_a_search_through_all() {
+        // close together, far apart, repeated, and some in one bucket
+        let mut inside: Vec<f64> = (0..40).map(|k| 1.0 + f64::from(k * k) / 1600.0).collect();
+        inside.extend((0..30).map(|k| 7.0 + 1e-9 * f64::from(k / 2)));
+        let knots: Vec<f64> = [vec![-3.0; 4], inside, vec![50.0; 4]].concat();
+        let knots = vector(3, &knots);
+        let beside = knots.as_slice().iter().flat_map(|knot| [knot.next_down(), *knot, knot.next_up()]);
+        for u in beside.chain((0..500).map(|k| -4.0 + 0.11 * f64::from(k))) {
+            let last = knots.spans().take_while(|span| span.start <= u).last();
+            let expected = last.map_or(3, |span| span.index);
+            assert_eq!(knots.find_span(u), expected, "u = {u}");
         }
     }
 

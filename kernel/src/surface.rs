@@ -3,11 +3,11 @@
 use glam::{DVec3, DVec4};
 use serde::{Deserialize, Serialize};
 
-use crate::basis::{self, ROOM};
+use crate::basis::{self, LOW_DEGREE, ROOM};
 use crate::bounds::Aabb;
 use crate::clamp::{self, Entry};
 use crate::curve::{check_points, check_weights, net};
-use crate::homogeneous::{cartesian, homogeneous, rational_partials};
+use crate::homogeneous::{cartesian, homogeneous, rational_low_partials, rational_partials};
 use crate::invalid::{Along, Direction, InvalidDefinition, PointIndex};
 use crate::knots::KnotVector;
 
@@ -127,12 +127,14 @@ impl NurbsSurface {
 
     /// The degrees in u and v.
     #[must_use]
+    #[inline]
     pub fn degree(&self) -> (usize, usize) {
         (self.u.degree(), self.v.degree())
     }
 
     /// The knot vector of a direction.
     #[must_use]
+    #[inline]
     pub fn knots(&self, direction: Direction) -> &KnotVector {
         match direction {
             Direction::U => &self.u,
@@ -142,30 +144,35 @@ impl NurbsSurface {
 
     /// Control points along u.
     #[must_use]
+    #[inline]
     pub fn rows(&self) -> usize {
         self.u.point_count()
     }
 
     /// Control points along v.
     #[must_use]
+    #[inline]
     pub fn columns(&self) -> usize {
         self.v.point_count()
     }
 
     /// The control net in row order: point `(i, j)` at `i * columns + j`.
     #[must_use]
+    #[inline]
     pub fn control_points(&self) -> &[DVec3] {
         &self.control_points
     }
 
     /// The weights in the layout of the control points; none where all are 1.
     #[must_use]
+    #[inline]
     pub fn weights(&self) -> Option<&[f64]> {
         self.weights.as_deref()
     }
 
     /// The first and the last parameter of a direction.
     #[must_use]
+    #[inline]
     pub fn domain(&self, direction: Direction) -> (f64, f64) {
         self.knots(direction).domain()
     }
@@ -190,12 +197,13 @@ impl NurbsSurface {
     #[must_use]
     pub fn point(&self, u: f64, v: f64) -> DVec3 {
         match self.u.degree().max(self.v.degree()) {
-            0..=3 => self.point_with_room::<4>(u, v),
-            4..=7 => self.point_with_room::<8>(u, v),
+            0..=LOW_DEGREE => self.low_partials::<1>(u, v, [false, false])[0][0],
+            6..=7 => self.point_with_room::<8>(u, v),
             _ => self.point_with_room::<ROOM>(u, v),
         }
     }
 
+    #[inline(never)]
     fn point_with_room<const R: usize>(&self, u: f64, v: f64) -> DVec3 {
         let (u, v) = (self.u.clamp(u), self.v.clamp(v));
         let ((p, q), columns) = (self.degree(), self.columns());
@@ -248,15 +256,67 @@ impl NurbsSurface {
         let side = order + 1;
         assert_eq!(out.len(), side * side, "the derivatives of order {order} need {side} * {side} entries");
         let (p, q) = self.degree();
-        match p.max(q) {
-            0..=1 => self.derivatives_with_room::<2>(u, v, below, order, out),
-            2 => self.derivatives_with_room::<3>(u, v, below, order, out),
-            3 => self.derivatives_with_room::<4>(u, v, below, order, out),
-            4..=7 => self.derivatives_with_room::<8>(u, v, below, order, out),
+        match (p.max(q), order) {
+            (0..=LOW_DEGREE, 0) => out[0] = self.low_partials::<1>(u, v, below)[0][0],
+            (0..=LOW_DEGREE, 1) => copy_partials(&self.low_partials::<2>(u, v, below), out),
+            (0..=LOW_DEGREE, 2) => copy_partials(&self.low_partials::<3>(u, v, below), out),
+            (0..=7, _) => self.derivatives_with_room::<8>(u, v, below, order, out),
             _ => self.derivatives_with_room::<ROOM>(u, v, below, order, out),
         }
     }
 
+    /// The derivatives of order `k` in u and `l` in v at `[k][l]`, for `k + l < D`; `D` is at most 3 and the degrees are low.
+    #[inline]
+    fn low_partials<const D: usize>(&self, u: f64, v: f64, below: [bool; 2]) -> [[DVec3; D]; D] {
+        let at = (self.u.clamp(u), self.v.clamp(v));
+        let spans = (span_from(&self.u, at.0, below[0]), span_from(&self.v, at.1, below[1]));
+        match self.u.degree() {
+            1 => self.low_partials_in_u::<2, D>(at, spans),
+            2 => self.low_partials_in_u::<3, D>(at, spans),
+            3 => self.low_partials_in_u::<4, D>(at, spans),
+            4 => self.low_partials_in_u::<5, D>(at, spans),
+            _ => self.low_partials_in_u::<6, D>(at, spans),
+        }
+    }
+
+    /// As [`low_partials`](Self::low_partials), of degree `N - 1` in u.
+    #[inline]
+    fn low_partials_in_u<const N: usize, const D: usize>(
+        &self,
+        at: (f64, f64),
+        spans: (usize, usize),
+    ) -> [[DVec3; D]; D] {
+        match self.v.degree() {
+            1 => self.low_partials_of::<N, 2, D>(at, spans),
+            2 => self.low_partials_of::<N, 3, D>(at, spans),
+            3 => self.low_partials_of::<N, 4, D>(at, spans),
+            4 => self.low_partials_of::<N, 5, D>(at, spans),
+            _ => self.low_partials_of::<N, 6, D>(at, spans),
+        }
+    }
+
+    /// As [`low_partials`](Self::low_partials), of degree `N - 1` in u and `M - 1` in v.
+    #[inline(never)]
+    fn low_partials_of<const N: usize, const M: usize, const D: usize>(
+        &self,
+        at: (f64, f64),
+        spans: (usize, usize),
+    ) -> [[DVec3; D]; D] {
+        let across = basis::low::<N, D>(&self.u, spans.0, at.0);
+        let along = basis::low::<M, D>(&self.v, spans.1, at.1);
+        let columns = self.columns();
+        let row = |i: usize| (spans.0 + 1 - N + i) * columns + spans.1 + 1 - M;
+        match &self.weights {
+            None => tensor_sums(&across, &along, |i| std::array::from_fn(|j| self.control_points[row(i)..][..M][j])),
+            Some(weights) => rational_low_partials(&tensor_sums(&across, &along, |i| {
+                let (points, weights) = (&self.control_points[row(i)..][..M], &weights[row(i)..][..M]);
+                std::array::from_fn(|j| homogeneous(points[j], weights[j]))
+            })),
+        }
+    }
+
+    // not part of the callers: its tables would be cleared, page by page, on the way to every other degree
+    #[inline(never)]
     fn derivatives_with_room<const R: usize>(&self, u: f64, v: f64, below: [bool; 2], order: usize, out: &mut [DVec3]) {
         let side = order + 1;
         let (u, v) = (self.u.clamp(u), self.v.clamp(v));
@@ -301,7 +361,43 @@ impl NurbsSurface {
     }
 }
 
+/// The sums of a net with the functions across in row `k` and along in row `l`, at `[k][l]` for `k + l < D`; `row(i)` is a row of the net.
+#[inline]
+fn tensor_sums<
+    P: Default + Copy + std::ops::AddAssign + std::ops::Mul<f64, Output = P>,
+    const N: usize,
+    const M: usize,
+    const D: usize,
+>(
+    across: &[[f64; N]; D],
+    along: &[[f64; M]; D],
+    row: impl Fn(usize) -> [P; M],
+) -> [[P; D]; D] {
+    let mut lines = [[P::default(); D]; N];
+    for (i, line) in lines.iter_mut().enumerate() {
+        let row = row(i);
+        for l in 0..D {
+            line[l] = basis::sum(&along[l], |j| row[j]);
+        }
+    }
+    let mut sums = [[P::default(); D]; D];
+    for k in 0..D {
+        for l in 0..D - k {
+            sums[k][l] = basis::sum(&across[k], |i| lines[i][l]);
+        }
+    }
+    sums
+}
+
+#[inline]
+fn copy_partials<const D: usize>(from: &[[DVec3; D]; D], out: &mut [DVec3]) {
+    for k in 0..D {
+        out[k * D..(k + 1) * D - k].copy_from_slice(&from[k][..D - k]);
+    }
+}
+
 /// The span that holds `u`; the one below where `u` is a knot and `below` is asked, if there is one.
+#[inline]
 fn span_from(knots: &KnotVector, u: f64, below: bool) -> usize {
     let mut span = knots.find_span(u);
     while below && span > knots.degree() && knots.as_slice()[span] >= u {

@@ -25,22 +25,48 @@ pub(crate) struct ClosedForm {
     definition: Arc<Definition>,
     size: f64,
     reach: f64,
+    /// In u and in v; of a surface.
+    borders: [Border; 2],
+}
+
+/// Where the domain ends in a direction, and the parameters between which nothing is near its ends.
+#[derive(Debug, Clone, Copy, Default)]
+struct Border {
+    first: f64,
+    low: f64,
+    high: f64,
+    last: f64,
+}
+
+impl Border {
+    fn of((first, last): (f64, f64)) -> Self {
+        let near = NEAR_BORDER * (last - first);
+        Self { first, low: first + near, high: last - near, last }
+    }
 }
 
 impl ClosedForm {
     pub(crate) fn new(analytic: Analytic, definition: &Arc<Definition>) -> Self {
         let (size, reach) = (definition.size(), definition.reach());
-        Self { analytic, definition: Arc::clone(definition), size, reach }
+        let borders = match &**definition {
+            Definition::NurbsCurve(_) => Default::default(),
+            Definition::NurbsSurface(surface) => {
+                [Direction::U, Direction::V].map(|along| Border::of(surface.domain(along)))
+            }
+        };
+        Self { analytic, definition: Arc::clone(definition), size, reach, borders }
     }
 
     /// The definition at a proposal's parameters, seen from the query.
+    #[inline]
     fn evaluate(&self, query: &Query, proposal: &Proposal) -> Solution {
         let &Proposal { mut u, mut v, distance: promised, lower_bound, tie } = proposal;
+        let p = query.point;
         let ulp = f64::EPSILON * self.reach;
         let (point, normal) = match &*self.definition {
             Definition::NurbsCurve(curve) if self.analytic.is_elliptic() => {
                 let point;
-                (u, point) = polished(curve, u, query.point, ulp);
+                (u, point) = polished(curve, u, p, ulp);
                 (point, DVec3::ZERO)
             }
             Definition::NurbsCurve(curve) => (curve.point(u), DVec3::ZERO),
@@ -48,48 +74,62 @@ impl ClosedForm {
                 let mut d = [DVec3::ZERO; 4];
                 surface.derivatives(u, v, 1, &mut d);
                 // a step is tried only where the point is farther than the shape: most are not
-                if d[0].distance(query.point) > promised + 2.0 * ulp
-                    && let Some(better) = polished_on(surface, (u, v), &d, query.point, ulp)
-                {
-                    ((u, v), d) = better;
-                }
-                let border = self.on_border(surface, u, v);
-                if border != (u, v) {
-                    (u, v) = border;
-                    surface.derivatives(u, v, 1, &mut d);
+                let far = promised + 2.0 * ulp;
+                if d[0].distance_squared(p) > far * far || self.near_border(u, v) {
+                    (u, v) = self.settled(surface, (u, v), &mut d, p, far);
                 }
                 (d[0], unit_normal(d[2], d[1]))
             }
         };
-        let offset = point - query.point;
+        let offset = point - p;
         let distance = offset.length();
-        Solution {
-            u,
-            v,
-            point: Some(point),
-            distance,
-            lower_bound: lower_bound.clamp(0.0, distance),
-            normal,
-            offset,
-            tie,
-        }
+        let lower_bound = if lower_bound < distance { lower_bound } else { distance };
+        Solution { u, v, point: Some(point), distance, lower_bound, normal, offset, tie }
     }
-}
 
-impl ClosedForm {
+    /// Whether parameters lie within [`NEAR_BORDER`] of the border of the domain, and not on it in both directions.
+    #[inline]
+    fn near_border(&self, u: f64, v: f64) -> bool {
+        let near = |at: f64, border: &Border| {
+            let inside = at >= border.low && at <= border.high;
+            !inside && at != border.first && at != border.last
+        };
+        near(u, &self.borders[0]) || near(v, &self.borders[1])
+    }
+
+    /// The parameters of a foot that is farther than `far`, where a step leads nearer, or that lies beside the border; with the derivatives there.
+    #[inline(never)]
+    fn settled(
+        &self,
+        surface: &NurbsSurface,
+        (mut u, mut v): (f64, f64),
+        d: &mut [DVec3; 4],
+        p: DVec3,
+        far: f64,
+    ) -> (f64, f64) {
+        let ulp = f64::EPSILON * self.reach;
+        if d[0].distance(p) > far
+            && let Some(better) = polished_on(surface, (u, v), d, p, ulp)
+        {
+            ((u, v), *d) = better;
+        }
+        let border = self.on_border(surface, u, v);
+        if border != (u, v) {
+            (u, v) = border;
+            surface.derivatives(u, v, 1, d);
+        }
+        (u, v)
+    }
+
     /// The parameters on the border of the domain where they lie beside it by no more than rounding of the model's coordinates: a foot beside a
     /// pole or an edge is told from one on it by less than that.
     fn on_border(&self, surface: &NurbsSurface, u: f64, v: f64) -> (f64, f64) {
-        let border = |x: f64, along: Direction| {
-            let (first, last) = surface.domain(along);
-            let near = NEAR_BORDER * (last - first);
-            match x {
-                x if x - first < near => first,
-                x if last - x < near => last,
-                x => x,
-            }
+        let border = |at: f64, border: &Border| match at {
+            at if at < border.low => border.first,
+            at if at > border.high => border.last,
+            at => at,
         };
-        let there = (border(u, Direction::U), border(v, Direction::V));
+        let there = (border(u, &self.borders[0]), border(v, &self.borders[1]));
         if there == (u, v) {
             return there;
         }
@@ -162,6 +202,7 @@ impl Solver for ClosedForm {
     }
 
     /// Declines where the shape's proven gap is wider than what is asked, or where the foot's parameter is not to be had as exactly.
+    #[inline]
     fn solve(&self, query: &Query, _hint: Option<DVec3>, scratch: &mut Scratch) -> Solved {
         let Some(proposal) = self.analytic.propose(query, &mut scratch.hierarchy, &mut scratch.statistics.proposal)
         else {

@@ -23,31 +23,51 @@ pub(crate) struct Reader<'a> {
 
 impl Reader<'_> {
     /// The answer that a solution of this method is.
+    #[inline]
     pub(crate) fn answer(self, solution: &Solution, method: Method) -> FootPoint {
-        let solution = &self.on_lower_side(*solution);
-        let distance = solution.distance;
-        let multiplicity = match solution.tie {
-            Tie::None => Multiplicity::Unique,
-            Tie::Apart => Multiplicity::Tied,
-            Tie::Connected => Multiplicity::Continuum,
-        };
-        let (parameter, point, place, normal) = match self.definition {
+        let (u, v) = (solution.u, solution.v);
+        match self.definition {
+            Definition::NurbsCurve(curve) if self.landmarks.is_plain(0, u) => {
+                let point = solution.point.unwrap_or_else(|| curve.point(u));
+                Self::found(solution, method, (Parameter::Curve(u), point, Place::Interior, None))
+            }
+            Definition::NurbsSurface(surface)
+                if self.landmarks.is_plain(0, u) && self.landmarks.is_plain(1, v) && solution.normal != DVec3::ZERO =>
+            {
+                let point = solution.point.unwrap_or_else(|| surface.point(u, v));
+                Self::found(solution, method, (Parameter::Surface(u, v), point, Place::Interior, Some(solution.normal)))
+            }
+            _ => self.particular(solution, method),
+        }
+    }
+
+    /// As [`answer`](Self::answer), at a place that may be particular.
+    #[inline(never)]
+    fn particular(self, solution: &Solution, method: Method) -> FootPoint {
+        let lower = self.on_lower_side(solution);
+        let solution = lower.as_ref().unwrap_or(solution);
+        let (u, v) = (solution.u, solution.v);
+        let read = match self.definition {
             Definition::NurbsCurve(curve) => {
-                let u = solution.u;
-                (
-                    Parameter::Curve(u),
-                    solution.point.unwrap_or_else(|| curve.point(u)),
-                    self.place_on_curve(curve, u),
-                    None,
-                )
+                let point = solution.point.unwrap_or_else(|| curve.point(u));
+                (Parameter::Curve(u), point, self.place_on_curve(curve, u), None)
             }
             Definition::NurbsSurface(surface) => {
-                let (u, v) = (solution.u, solution.v);
                 let (place, normal) = self.place_on_surface(surface, u, v, solution.normal);
                 let point = solution.point.unwrap_or_else(|| surface.point(u, v));
                 (Parameter::Surface(u, v), point, place, normal)
             }
         };
+        Self::found(solution, method, read)
+    }
+
+    #[inline]
+    fn found(
+        solution: &Solution,
+        method: Method,
+        (parameter, point, place, normal): (Parameter, DVec3, Place, Option<DVec3>),
+    ) -> FootPoint {
+        let distance = solution.distance;
         let side = normal.map(|normal| -solution.offset.dot(normal));
         FootPoint {
             parameter,
@@ -55,41 +75,41 @@ impl Reader<'_> {
             distance,
             lower_bound: solution.lower_bound.min(distance),
             place,
-            multiplicity,
+            multiplicity: match solution.tie {
+                Tie::None => Multiplicity::Unique,
+                Tie::Apart => Multiplicity::Tied,
+                Tie::Connected => Multiplicity::Continuum,
+            },
             normal,
             signed_distance: side.map(|side| if side < 0.0 { -distance } else { distance }),
             method,
         }
     }
 
-    /// A foot on a seam has two parameters: the lower one is given, where both are one point but for rounding.
+    /// A foot on a seam has two parameters: the lower one is given, where both are one point but for rounding. None where it is the lower one.
     ///
     /// The ends of a definition that closes only to an ulp of its coordinates may differ by more than rounding in the entity's own;
     /// then the foot stays where it was found, since the distance belongs to it.
-    fn on_lower_side(self, mut solution: Solution) -> Solution {
-        let lower = |closed: bool, u: f64, (first, last): (f64, f64)| if closed && u == last { first } else { u };
-        let closed = self.landmarks.closed;
+    fn on_lower_side(self, solution: &Solution) -> Option<Solution> {
+        let landmarks = self.landmarks;
+        let lower = |d: usize, at: f64| {
+            let (first, last) = landmarks.ends[d];
+            if landmarks.closed[d] && at == last { first } else { at }
+        };
+        let (u, v) = (lower(0, solution.u), lower(1, solution.v));
+        if (u, v) == (solution.u, solution.v) {
+            return None;
+        }
         let at = |u: f64, v: f64| match self.definition {
             Definition::NurbsCurve(curve) => curve.point(u),
             Definition::NurbsSurface(surface) => surface.point(u, v),
         };
-        let (u, v) = match self.definition {
-            Definition::NurbsCurve(curve) => (lower(closed[0], solution.u, curve.domain()), solution.v),
-            Definition::NurbsSurface(surface) => (
-                lower(closed[0], solution.u, surface.domain(Direction::U)),
-                lower(closed[1], solution.v, surface.domain(Direction::V)),
-            ),
-        };
-        if (u, v) != (solution.u, solution.v) {
-            let moved = at(u, v) - at(solution.u, solution.v);
-            let offset = solution.offset + moved;
-            if moved.length() <= 16.0 * f64::EPSILON * (self.size + solution.distance) {
-                (solution.u, solution.v, solution.offset, solution.distance) = (u, v, offset, offset.length());
-                solution.point = None;
-                solution.lower_bound = solution.lower_bound.min(solution.distance);
-            }
-        }
-        solution
+        let moved = at(u, v) - at(solution.u, solution.v);
+        let offset = solution.offset + moved;
+        let distance = offset.length();
+        let is_one_point = moved.length() <= 16.0 * f64::EPSILON * (self.size + solution.distance);
+        let lower_bound = solution.lower_bound.min(distance);
+        is_one_point.then_some(Solution { u, v, point: None, offset, distance, lower_bound, ..*solution })
     }
 
     fn place_on_curve(self, curve: &NurbsCurve, u: f64) -> Place {
@@ -116,7 +136,7 @@ impl Reader<'_> {
 
     fn place_on_surface(self, surface: &NurbsSurface, u: f64, v: f64, normal: DVec3) -> (Place, Option<DVec3>) {
         let landmarks = self.landmarks;
-        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
+        let ends = landmarks.ends;
         let at = [u, v];
         let on = |direction: usize| at[direction] == ends[direction].0 || at[direction] == ends[direction].1;
         let pole = (0..2)
@@ -149,7 +169,7 @@ impl Reader<'_> {
 
     /// The mean of the unit normals on all sides of a seam or break, and whether they differ.
     fn normals_around(self, surface: &NurbsSurface, at: [f64; 2], around: [bool; 2]) -> (Option<DVec3>, bool) {
-        let ends = [surface.domain(Direction::U), surface.domain(Direction::V)];
+        let ends = self.landmarks.ends;
         let mut normals: smallvec::SmallVec<[(DVec3, f64); 4]> = smallvec::SmallVec::new();
         for below in [[false, false], [true, false], [false, true], [true, true]] {
             if (0..2).any(|d| below[d] && !around[d]) {

@@ -19,6 +19,8 @@ const TURN: f64 = 1e-7;
 /// The particular parameters of a definition.
 #[derive(Debug, Clone, Default)]
 pub(crate) struct Landmarks {
+    /// The first and the last parameter, in u and in v.
+    pub ends: [(f64, f64); 2],
     /// Whether the definition closes, in u and in v.
     pub closed: [bool; 2],
     /// Whether the edge at the start and at the end of u is a single point, and of v.
@@ -30,10 +32,19 @@ pub(crate) struct Landmarks {
 }
 
 impl Landmarks {
+    /// Whether nothing is particular about a parameter in u (0) or in v (1): it lies inside the domain and on no break, and is no cusp.
+    #[inline]
+    pub(crate) fn is_plain(&self, direction: usize, at: f64) -> bool {
+        let (first, last) = self.ends[direction];
+        let none = |particular: &[f64]| particular.iter().all(|x| *x != at);
+        at > first && at < last && none(&self.breaks[direction]) && (direction == 1 || none(&self.cusps))
+    }
+
     pub(crate) fn of(definition: &Definition) -> Self {
         let same = SAME_POINT * definition.reach();
         match definition {
             Definition::NurbsCurve(curve) => Self {
+                ends: [curve.domain(), (0.0, 0.0)],
                 closed: [ends_meet(curve, same), false],
                 breaks: [full_breaks(curve.knots()), Vec::new()],
                 cusps: cusps(curve),
@@ -57,6 +68,7 @@ impl Landmarks {
         let closed_u = (0..columns).all(|j| close(point(0, j), point(rows - 1, j)) && alike(across(0), across(j)));
         let closed_v = (0..rows).all(|i| close(point(i, 0), point(i, columns - 1)) && alike(along(0), along(i)));
         Self {
+            ends: [surface.domain(Direction::U), surface.domain(Direction::V)],
             closed: [closed_u, closed_v],
             poles: [[pole_u(0), pole_u(rows - 1)], [pole_v(0), pole_v(columns - 1)]],
             breaks: [full_breaks(surface.knots(Direction::U)), full_breaks(surface.knots(Direction::V))],

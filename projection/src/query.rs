@@ -71,23 +71,18 @@ impl QueryOptions {
     /// # Errors
     ///
     /// [`QueryError::InvalidOption`] where a length is negative or not a number.
+    #[inline]
     pub fn validate(&self) -> Result<(), QueryError> {
-        let lengths = [
-            ("gap", self.gap),
-            ("max_distance", self.max_distance),
-            ("coincidence", self.coincidence),
-            ("newton.coincidence", self.newton.coincidence),
-            ("newton.perpendicularity", Some(self.newton.perpendicularity)),
-            ("flatness", self.flatness),
-        ];
-        for (option, value) in lengths {
-            if let Some(value) = value
-                && (value.is_nan() || value < 0.0)
-            {
-                return Err(QueryError::InvalidOption { option, value });
-            }
-        }
-        Ok(())
+        let check = |option, value: Option<f64>| match value {
+            Some(value) if value.is_nan() || value < 0.0 => Err(QueryError::InvalidOption { option, value }),
+            _ => Ok(()),
+        };
+        check("gap", self.gap)?;
+        check("max_distance", self.max_distance)?;
+        check("coincidence", self.coincidence)?;
+        check("newton.coincidence", self.newton.coincidence)?;
+        check("newton.perpendicularity", Some(self.newton.perpendicularity))?;
+        check("flatness", self.flatness)
     }
 }
 
@@ -109,6 +104,7 @@ impl Query {
     /// # Errors
     ///
     /// A coordinate that is no finite number or beyond 1e75; an option without meaning.
+    #[inline]
     pub fn new(point: DVec3, options: QueryOptions) -> Result<Self, QueryError> {
         options.validate()?;
         if point.abs().cmple(DVec3::splat(COORDINATE_LIMIT)).all() {

@@ -68,8 +68,9 @@ pub(crate) enum Tie {
 }
 
 /// The unit vector along `a × b`; zero where the two are parallel to rounding or one of them vanishes.
+#[inline]
 pub(crate) fn unit_normal(a: DVec3, b: DVec3) -> DVec3 {
     let n = a.cross(b);
-    let (length, of) = (n.length(), a.length() * b.length());
-    if length > 1e-12 * of && of > 0.0 { n / length } else { DVec3::ZERO }
+    let (square, of) = (n.length_squared(), a.length_squared() * b.length_squared());
+    if square > 1e-24 * of && of > 0.0 { n * (1.0 / square.sqrt()) } else { DVec3::ZERO }
 }

@@ -64,7 +64,8 @@ impl Arc {
     }
 
     /// The nearest point to `q`, which is `beside` the plane (a squared length).
-    pub(super) fn foot(&self, q: DVec2, beside: f64, asked: Asked) -> Foot {
+    #[inline(always)]
+    pub(super) fn foot(&self, q: DVec2, beside: f64, asked: &Asked) -> Foot {
         let arm = q - self.origin;
         let ray = self.sector.nearest(DVec2::new(arm.dot(self.x), arm.dot(self.y)), asked.noise);
         let rim = self.radius - self.sector.shift();

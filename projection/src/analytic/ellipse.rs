@@ -104,7 +104,8 @@ impl EllipticArc {
     /// The nearest point to `q`, which is `beside` the plane (a squared length).
     ///
     /// None where an arc does not hold the foot on the whole ellipse, and rounding does not tell whether another local minimum exists.
-    pub(super) fn foot(&self, q: DVec2, beside: f64, asked: Asked) -> Option<Foot> {
+    #[inline(never)]
+    pub(super) fn foot(&self, q: DVec2, beside: f64, asked: &Asked) -> Option<Foot> {
         let arm = q - self.centre;
         let arm = DVec2::new(arm.dot(self.x), arm.dot(self.y));
         let reach = arm.length();
@@ -166,7 +167,7 @@ impl EllipticArc {
     }
 
     /// A point by its eccentric angle.
-    fn candidate(&self, pair: DVec2, arm: DVec2, beside: f64, asked: Asked) -> Candidate {
+    fn candidate(&self, pair: DVec2, arm: DVec2, beside: f64, asked: &Asked) -> Candidate {
         let at = DVec2::new(self.radii.0 * pair.x, self.radii.1 * pair.y);
         let turned = from_middle(self.middle, self.ascending, pair);
         let (first, last) = self.inverse.domain();

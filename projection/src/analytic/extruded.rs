@@ -93,7 +93,8 @@ impl Extruded {
         Some(Built { shape, deviation: axes.local(skew), axes, radius: 0.0 })
     }
 
-    pub(super) fn foot(&self, q: DVec3, asked: Asked, search: &mut Search<'_>) -> Option<Pair> {
+    #[inline(always)]
+    pub(super) fn foot(&self, q: DVec3, asked: &Asked, search: &mut Search<'_>) -> Option<Pair> {
         let (foot, height) = match &self.oblique {
             None => {
                 let clamped = self.heights.clamp(q.z, asked.tolerance());

@@ -14,8 +14,14 @@ const DEPTH: u32 = 6;
 /// Pieces beyond this number are not halved.
 const PIECES: usize = 4096;
 
-/// How far the coefficients of a piece of degree 3 or more may be from a straight row, as a share of its length: two steps then lead to
-/// the root.
+/// Even parts of all keys for each piece, in which the piece that holds a direction is guessed: where it is not, it is a few pieces on.
+const PARTS: usize = 4;
+
+/// Borders between pieces up to this number are looked at one by one when a piece is sought.
+const FEW: usize = 8;
+
+/// How far the coefficients of a piece of degree 3 or more may be from a straight row, as a share of its length: one step then leads from
+/// the start to the root.
 const STRAIGHT: f64 = 0.02;
 
 /// A step whose cube is below rounding.
@@ -25,16 +31,29 @@ const CUBED: f64 = 3e-6;
 #[derive(Debug)]
 pub(super) struct Inverse {
     degree: usize,
-    /// Pairs `(m, n)`: `degree + 1` a piece.
+    /// The first and the last parameter.
+    domain: (f64, f64),
+    pieces: Vec<Piece>,
+    search: PieceSearch,
+    /// Of degree 3 or more: `degree + 1` pairs a piece.
     coefficients: Vec<DVec2>,
-    /// The pair in the middle of each piece.
-    middles: Vec<DVec2>,
-    /// The parameters where pieces begin and end.
-    parameters: Vec<f64>,
-    /// The pair at each of these.
-    borders: Vec<DVec2>,
-    /// The weight there: what `m` and `n` are relative to.
-    weights: Vec<f64>,
+}
+
+/// A piece of the definition, or a part of one; pairs are `(m, n)`.
+#[derive(Debug)]
+struct Piece {
+    /// The parameters where it begins and ends.
+    start: f64,
+    end: f64,
+    /// The pairs there.
+    first: DVec2,
+    last: DVec2,
+    /// The weights there: what the pairs are relative to.
+    weights: (f64, f64),
+    /// Of degree 2: the pair between.
+    middle: DVec2,
+    /// Of degree 3 or more: where the root is beside a straight row's, which is at `r`, as a cubic polynomial in `r` times `r (1 - r)`.
+    beside: [f64; 4],
 }
 
 impl Inverse {
@@ -49,16 +68,15 @@ impl Inverse {
             curve_pieces(knots, &form).into_iter().rev().map(|piece| (piece, 0)).collect();
         let mut inverse = Self {
             degree: knots.degree(),
+            domain: knots.domain(),
+            pieces: Vec::new(),
+            search: PieceSearch::Stepped { below: 0 },
             coefficients: Vec::new(),
-            middles: Vec::new(),
-            parameters: vec![knots.domain().0],
-            borders: vec![pair(&form[0])],
-            weights: vec![form[0].w],
         };
         while let Some((piece, depth)) = waiting.pop() {
             let row: Vec<DVec2> = piece.points.iter().map(pair).collect();
             let wide = turns && !within_a_sixth(&row);
-            let bent = row.len() > 3 && is_bent(&row) && waiting.len() + inverse.parameters.len() < PIECES;
+            let bent = row.len() > 3 && is_bent(&row) && waiting.len() + inverse.pieces.len() < PIECES;
             if (wide || bent) && depth < DEPTH {
                 let (low, high) = halves(piece);
                 waiting.extend([(high, depth + 1), (low, depth + 1)]);
@@ -69,75 +87,172 @@ impl Inverse {
             if wide || !ascends {
                 return None;
             }
-            inverse.coefficients.extend(row);
-            inverse.parameters.push(piece.span.end);
-            inverse.borders.push(last);
-            inverse.weights.push(piece.points[piece.points.len() - 1].w);
-            inverse.middles.push(pair(&halves(piece).1.points[0]));
+            inverse.pieces.push(Piece {
+                start: piece.span.start,
+                end: piece.span.end,
+                first,
+                last,
+                weights: (piece.points[0].w, piece.points[row.len() - 1].w),
+                middle: row[row.len() / 2],
+                beside: beside(&row),
+            });
+            if row.len() > 3 {
+                inverse.coefficients.extend(row);
+            }
         }
+        inverse.search = PieceSearch::new(&inverse.pieces, turns);
         Some(inverse)
     }
 
     /// The first and the last parameter.
+    #[inline]
     pub(super) fn domain(&self) -> (f64, f64) {
-        (self.parameters[0], self.parameters[self.parameters.len() - 1])
+        self.domain
     }
 
     /// The pairs at the first and at the last parameter, for weight 1.
     pub(super) fn ends(&self) -> [DVec2; 2] {
-        let last = self.weights.len() - 1;
-        [self.borders[0] / self.weights[0], self.borders[last] / self.weights[last]]
+        let (first, last) = (&self.pieces[0], &self.pieces[self.pieces.len() - 1]);
+        [first.first / first.weights.0, last.last / last.weights.1]
     }
 
-    /// The parameter of the point in direction `(a, b)`; on the border of a piece where that is within `tolerance`, a difference of the
-    /// coordinate. Outside of the range, the nearer end.
+    /// The parameter of the point in direction `(a, b)`, of any length; on the border of a piece where that is within `tolerance`, a difference
+    /// of the coordinate times the direction's length. Outside of the range, the nearer end.
+    #[inline(never)]
     pub(super) fn parameter(&self, a: f64, b: f64, tolerance: f64) -> f64 {
-        let k = self.piece(a, b);
-        let (p, along) = (self.degree, |pair: DVec2| a * pair.y - b * pair.x);
-        if along(self.borders[k]) >= -tolerance * self.weights[k] {
-            return self.parameters[k];
+        let along = |pair: DVec2| a * pair.y - b * pair.x;
+        let k = self.search.find(&self.pieces, a, b);
+        let piece = &self.pieces[k];
+        let (f, l) = (along(piece.first), along(piece.last));
+        if f >= -tolerance * piece.weights.0 {
+            return piece.start;
         }
-        if along(self.borders[k + 1]) <= tolerance * self.weights[k + 1] {
-            return self.parameters[k + 1];
+        if l <= tolerance * piece.weights.1 {
+            return piece.end;
         }
-        let row = &self.coefficients[k * (p + 1)..(k + 1) * (p + 1)];
-        let share = match *row {
-            [first, last] => {
-                let (f, l) = (along(first), along(last));
-                f / (f - l)
-            }
-            [first, middle, last] => quadratic(along(first), along(middle), along(last)),
-            [first, .., last] => {
-                // the parabola through the ends and the middle gives three digits
-                let (f, l) = (along(first), along(last));
-                let start = quadratic(f, 2.0 * along(self.middles[k]) - 0.5 * (f + l), l);
+        let share = match self.degree {
+            1 => f / (f - l),
+            2 => quadratic(f, along(piece.middle), l),
+            p => {
+                let row = &self.coefficients[k * (p + 1)..(k + 1) * (p + 1)];
                 let form = row.iter().map(|pair| along(*pair));
+                let start = piece.near(f, l);
                 match p {
                     3 => root::<4>(form, p, start),
-                    4..=7 => root::<8>(form, p, start),
+                    4 => root::<5>(form, p, start),
+                    5 => root::<6>(form, p, start),
+                    6..=7 => root::<8>(form, p, start),
                     _ => root::<{ MAX_DEGREE + 1 }>(form, p, start),
                 }
             }
-            [..] => 0.0,
         };
-        let (start, end) = (self.parameters[k], self.parameters[k + 1]);
-        (start + share * (end - start)).clamp(start, end)
+        let parameter = piece.start + share * (piece.end - piece.start);
+        if parameter < piece.end { parameter } else { piece.end }
+    }
+}
+
+/// How the piece that holds a direction is found.
+#[derive(Debug)]
+enum PieceSearch {
+    /// Of few pieces: by stepping over borders, in one half plane, where the cross product tells their order. That many begin in the lower one, and all
+    /// directions of the upper one have passed their ends.
+    Stepped { below: usize },
+    /// Of many: by the piece in the middle of one of the even parts of all keys, and a few steps from there.
+    Guessed { turns: bool, pieces: Vec<u32>, least: f64, density: f64 },
+}
+
+impl PieceSearch {
+    fn new(pieces: &[Piece], turns: bool) -> Self {
+        let borders: Vec<DVec2> = pieces[..pieces.len() - 1].iter().map(|piece| piece.last).collect();
+        if borders.len() <= FEW {
+            return Self::Stepped { below: borders.iter().filter(|border| border.y < 0.0).count() };
+        }
+        let key = |pair: DVec2| key(turns, pair.x, pair.y);
+        let (least, most) = (key(pieces[0].first), key(pieces[pieces.len() - 1].last));
+        let (least, most) = if turns { (-2.0, 2.0) } else { (least, most) };
+        let parts = PARTS * pieces.len();
+        let width = (most - least) / parts as f64;
+        let keys: Vec<f64> = borders.into_iter().map(key).collect();
+        let middle = |part: usize| least + (part as f64 + 0.5) * width;
+        let pieces = (0..parts).map(|part| keys.partition_point(|border| *border <= middle(part)) as u32).collect();
+        Self::Guessed { turns, pieces, least, density: 1.0 / width }
     }
 
-    /// The piece that holds a direction.
-    fn piece(&self, a: f64, b: f64) -> usize {
-        let inner = &self.borders[1..self.borders.len() - 1];
-        // in one half plane the cross product tells the order, else the half plane does
-        let before = |border: &DVec2| {
-            let ahead = a * border.y - b * border.x <= 0.0;
-            if (border.y >= 0.0) == (b >= 0.0) { ahead } else { b >= 0.0 }
-        };
-        if inner.len() <= 8 {
-            inner.iter().map(|border| usize::from(before(border))).sum()
-        } else {
-            inner.partition_point(before)
+    #[inline]
+    fn find(&self, all: &[Piece], a: f64, b: f64) -> usize {
+        let along = |pair: DVec2| a * pair.y - b * pair.x;
+        match self {
+            Self::Stepped { below } => {
+                let (mut k, end) = if b >= 0.0 { (*below, all.len() - 1) } else { (0, *below) };
+                while k < end && along(all[k].last) <= 0.0 {
+                    k += 1;
+                }
+                k
+            }
+            Self::Guessed { turns, pieces, least, density } => {
+                let part = ((key(*turns, a, b) - least) * density) as usize;
+                let mut k = pieces[part.min(pieces.len() - 1)] as usize;
+                while k > 0 && along(all[k].first) > 0.0 {
+                    k -= 1;
+                }
+                while k + 1 < all.len() && along(all[k].last) <= 0.0 {
+                    k += 1;
+                }
+                k
+            }
         }
     }
+}
+
+/// What ascends with the coordinate that a direction stands for: an angle or a length.
+#[inline]
+fn key(turns: bool, a: f64, b: f64) -> f64 {
+    if turns { (1.0 - a / DVec2::new(a, b).length()).copysign(b) } else { b / a }
+}
+
+impl Piece {
+    /// About where the root is, of a form that begins at `f` and ends at `l`.
+    fn near(&self, f: f64, l: f64) -> f64 {
+        let r = f / (f - l);
+        let [a, b, c, d] = self.beside;
+        let start = r + r * (1.0 - r) * (a + r * (b + r * (c + r * d)));
+        start.clamp(0.0, 1.0)
+    }
+}
+
+/// [`Piece::beside`] of a row of pairs: exact at four places inside.
+fn beside(row: &[DVec2]) -> [f64; 4] {
+    let (first, last) = (row[0], row[row.len() - 1]);
+    let places = [0.07, 0.35, 0.65, 0.93].map(|share| {
+        let at = value(row, share);
+        let (f, l) = (at.perp_dot(first), at.perp_dot(last));
+        let r = f / (f - l);
+        (r, (share - r) / (r * (1.0 - r)))
+    });
+    // Newton's divided differences, then the powers of r
+    let (at, mut steps) = (places.map(|place| place.0), places.map(|place| place.1));
+    for k in 1..4 {
+        for i in (k..4).rev() {
+            steps[i] = (steps[i] - steps[i - 1]) / (at[i] - at[i - k]);
+        }
+    }
+    let mut powers = [0.0; 4];
+    for i in (0..4).rev() {
+        for k in (1..4).rev() {
+            powers[k] = powers[k - 1] - at[i] * powers[k];
+        }
+        powers[0] = steps[i] - at[i] * powers[0];
+    }
+    if powers.iter().all(|power| power.is_finite()) { powers } else { [0.0; 4] }
+}
+
+/// De Casteljau's algorithm.
+fn value(row: &[DVec2], share: f64) -> DVec2 {
+    let mut row = row.to_vec();
+    while row.len() > 1 {
+        row = row.windows(2).map(|pair| pair[0].lerp(pair[1], share)).collect();
+    }
+    row[0]
 }
 
 fn pair(point: &DVec4) -> DVec2 {
@@ -173,19 +288,22 @@ fn halves(piece: BezierCurve) -> (BezierCurve, BezierCurve) {
     (low, high)
 }
 
-/// The root in `[0, 1]` of the quadratic Bernstein form `f, m, l` with `f <= 0 <= l`.
+/// The root in `[0, 1]` of the quadratic Bernstein form `f, m, l` with `f < 0 < l`.
 ///
 /// In `r = t / (1 - t)` it is `l r² + 2 m r + f`, whose discriminant is a sum of squares; of the two formulas for the positive root,
 /// the one without cancellation is taken.
+#[inline]
 fn quadratic(f: f64, m: f64, l: f64) -> f64 {
     let root = (m * m - f * l).sqrt();
-    let share = if m >= 0.0 { -f / (m + root - f) } else { (root - m) / (root - m + l) };
-    if share.is_finite() { share } else { 0.5 }
+    if m >= 0.0 { -f / (m + root - f) } else { (root - m) / (root - m + l) }
 }
 
 /// A root in `[0, 1]` of a Bernstein form that begins below 0 and ends above, from a start: Chebyshev's method, Newton's with the bend of
 /// the form, kept inside the bracket.
-fn root<const R: usize>(form: impl Iterator<Item = f64>, p: usize, start: f64) -> f64 {
+#[inline]
+fn root<const R: usize>(form: impl Iterator<Item = f64>, degree: usize, start: f64) -> f64 {
+    // a degree that fills the room is known to the compiler, and its loops are
+    let p = if R <= 6 { R - 1 } else { degree };
     let mut coefficients = [0.0; R];
     coefficients.iter_mut().zip(form).for_each(|(c, f)| *c = f);
     let (mut low, mut high) = (0.0, 1.0);

@@ -135,6 +135,9 @@ impl Analytic {
     }
 
     /// The foot that the shape proposes; none where it declines.
+    ///
+    /// Compiled into its caller, and with it what all arcs and segments need: numbers that are returned through memory are waited for.
+    #[inline(always)]
     pub(crate) fn propose(&self, query: &Query, workspace: &mut Workspace, done: &mut Work) -> Option<Proposal> {
         let q = self.axes.enter(query.point);
         let reach = q.length();
@@ -146,12 +149,12 @@ impl Analytic {
         let coincidence = self.axes.local(query.options.coincidence.unwrap_or(1e-6 * self.size));
         // the centre itself is known to an ulp of the size at best
         let noise = 2.0 * ROUNDING * (1.0 + self.axes.local(query.point.abs().max_element() + self.axes.reach()));
-        let asked = Asked { gap: gap.max(rounding), coincidence, noise, reach };
+        let asked = Asked { gap: if gap > rounding { gap } else { rounding }, coincidence, noise, reach };
         let mut search =
             Search { workspace, done, budget: query.options.work, gap: 0.9 * gap - 2.0 * (self.deviation + rounding) };
         let Pair { at, distance, unproven, tie } = match &self.shape {
             Shape::Planar(planar) => {
-                let foot = planar.foot(q, asked, &mut search)?;
+                let foot = planar.foot(q, &asked, &mut search)?;
                 Pair {
                     at: DVec2::new(foot.parameter, 0.0),
                     distance: foot.distance,
@@ -159,9 +162,9 @@ impl Analytic {
                     tie: foot.tie,
                 }
             }
-            Shape::Turned(turned) => turned.foot(q, asked, &mut search)?,
-            Shape::Extruded(extruded) => extruded.foot(q, asked, &mut search)?,
-            Shape::Parallelogram(parallelogram) => parallelogram.foot(q, asked),
+            Shape::Turned(turned) => turned.foot(q, &asked, &mut search)?,
+            Shape::Extruded(extruded) => extruded.foot(q, &asked, &mut search)?,
+            Shape::Parallelogram(parallelogram) => parallelogram.foot(q, &asked),
         };
         let lower = distance - unproven - self.deviation - rounding;
         let (distance, lower_bound) = (self.axes.length(distance), self.axes.length(lower.max(0.0)));

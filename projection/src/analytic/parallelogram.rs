@@ -69,7 +69,7 @@ pub(super) fn parallelogram(
 }
 
 impl Parallelogram {
-    pub(super) fn foot(&self, q: DVec3, asked: Asked) -> Pair {
+    pub(super) fn foot(&self, q: DVec3, asked: &Asked) -> Pair {
         let p = q.truncate();
         let along = self.duals.map(|dual| dual.dot(p));
         let half = [self.ranges[0].half(), self.ranges[1].half()];

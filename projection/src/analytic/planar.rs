@@ -80,7 +80,8 @@ impl Planar {
         matches!(self.profile, Profile::EllipticArc(_))
     }
 
-    pub(super) fn foot(&self, q: DVec3, asked: Asked, search: &mut Search<'_>) -> Option<Foot> {
+    #[inline(always)]
+    pub(super) fn foot(&self, q: DVec3, asked: &Asked, search: &mut Search<'_>) -> Option<Foot> {
         self.profile.foot(q.truncate(), q.z * q.z, asked, search)
     }
 }

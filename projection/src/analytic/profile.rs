@@ -69,7 +69,7 @@ impl Segment {
         Some(Self { middle, along, range: Range::new(half, &net.knots, lengths)? })
     }
 
-    fn foot(&self, q: DVec2, beside: f64, asked: Asked) -> Foot {
+    fn foot(&self, q: DVec2, beside: f64, asked: &Asked) -> Foot {
         let arm = q - self.middle;
         let clamped = self.range.clamp(arm.dot(self.along), asked.tolerance());
         let across = self.along.perp_dot(arm);
@@ -93,7 +93,8 @@ impl Asked {
 impl Profile {
     /// The nearest point to `q`, which is `beside` the plane (a squared length). None where the search of a general curve leaves more open
     /// than asked, or a case of an ellipse is in doubt.
-    pub(super) fn foot(&self, q: DVec2, beside: f64, asked: Asked, search: &mut Search<'_>) -> Option<Foot> {
+    #[inline(always)]
+    pub(super) fn foot(&self, q: DVec2, beside: f64, asked: &Asked, search: &mut Search<'_>) -> Option<Foot> {
         match self {
             Self::Segment(segment) => Some(segment.foot(q, beside, asked)),
             Self::Arc(arc) => Some(arc.foot(q, beside, asked)),
@@ -146,7 +147,8 @@ fn closed(kind: &Kind, net: &Net) -> Option<(Profile, f64)> {
 }
 
 /// The nearest point of a general curve by its own certified solver.
-fn searched(hierarchy: &Hierarchy, q: DVec2, beside: f64, asked: Asked, search: &mut Search<'_>) -> Option<Foot> {
+#[inline(never)]
+fn searched(hierarchy: &Hierarchy, q: DVec2, beside: f64, asked: &Asked, search: &mut Search<'_>) -> Option<Foot> {
     if search.gap <= 0.0 {
         return None;
     }

@@ -37,6 +37,7 @@ impl Range {
     }
 
     /// The nearest length to `h`; borders of the definition's pieces within `tolerance` count as met.
+    #[inline(always)]
     pub(super) fn clamp(&self, h: f64, tolerance: f64) -> Clamped {
         let (first, last) = self.inverse.domain();
         let outside = h.abs() - self.half;

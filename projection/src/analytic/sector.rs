@@ -24,6 +24,8 @@ pub(super) struct Sector {
     end: DVec2,
     /// `1 - cos` of it.
     versine: f64,
+    /// The largest distance between two of its points at radius 1.
+    width: f64,
     /// A full turn.
     full: bool,
     inverse: Inverse,
@@ -37,8 +39,9 @@ pub(super) struct Ray {
     pub radial: f64,
     /// And across it.
     pub across: f64,
-    /// The query from the centre, its second coordinate made positive.
+    /// The query from the centre, its second coordinate made positive, and that as it was.
     from: DVec2,
+    y: f64,
     rho: f64,
     side: Side,
 }
@@ -72,52 +75,58 @@ impl Sector {
         let slack = ENDS * sin.max(0.25 * turn).min(1.0);
         let near = |pair: DVec2, sin: f64| pair.perp_dot(DVec2::new(cos, sin)).abs() <= slack * pair.length();
         let fits = near(first, -sin) && near(last, sin) && first.x * cos - first.y * sin > 0.0;
-        fits.then_some(Self { shift, end: DVec2::new(cos, sin), versine, full, inverse })
+        let width = if cos > 0.0 { 2.0 * sin } else { 2.0 };
+        fits.then_some(Self { shift, end: DVec2::new(cos, sin), versine, width, full, inverse })
     }
 
+    #[inline]
     pub(super) fn shift(&self) -> f64 {
         self.shift
     }
 
     /// The nearest ray to a query; nearer than `noise` to the centre or to the middle between both ends, it counts as being there.
+    #[inline(always)]
     pub(super) fn nearest(&self, q: DVec2, noise: f64) -> Ray {
         let (shift, DVec2 { x: cos, y: sin }) = (self.shift, self.end);
         let from = DVec2::new(q.x + shift, q.y.abs());
         let rho = from.length();
         if rho <= noise {
             let direction = DVec2::new(cos, -sin);
-            return Ray { direction, radial: rho - shift, across: 0.0, from, rho, side: Side::Centre };
+            return Ray { direction, radial: rho - shift, across: 0.0, from, y: q.y, rho, side: Side::Centre };
         }
         if !self.full && from.y * cos > from.x * sin {
             let (sin, side) = if q.y <= noise { (-sin, Side::Start) } else { (sin, Side::End) };
             let radial = q.x * cos + q.y * sin - shift * self.versine;
             let across = q.y * cos - q.x * sin - shift * sin;
-            return Ray { direction: DVec2::new(cos, sin), radial, across, from, rho, side };
+            return Ray { direction: DVec2::new(cos, sin), radial, across, from, y: q.y, rho, side };
         }
         let radial = if shift == 0.0 { rho } else { (q.x * (q.x + 2.0 * shift) + q.y * q.y) / (rho + shift) };
         let inverse = 1.0 / rho;
         let direction = DVec2::new(from.x * inverse, q.y * inverse);
-        Ray { direction, radial, across: 0.0, from, rho, side: Side::Within }
+        Ray { direction, radial, across: 0.0, from, y: q.y, rho, side: Side::Within }
     }
 
     /// The definition's parameter on a ray; the lowest of those that share a point.
     ///
     /// `reach` is how far the query is: its rounding, turned by the bend of the shape between it and the foot, is what a border of a piece is
     /// met within.
+    #[inline(always)]
     pub(super) fn parameter(&self, ray: &Ray, reach: f64) -> f64 {
         let (first, last) = self.inverse.domain();
         let parameter = match ray.side {
             Side::Centre | Side::Start => first,
             Side::End => last,
             Side::Within => {
-                let tolerance = (8.0 * ROUNDING * (1.0 + reach) / ray.rho).min(1e-9);
-                self.inverse.parameter(ray.direction.x, ray.direction.y, tolerance)
+                let (rounding, most) = (8.0 * ROUNDING * (1.0 + reach), 1e-9 * ray.rho);
+                let tolerance = if rounding < most { rounding } else { most };
+                self.inverse.parameter(ray.from.x, ray.y, tolerance)
             }
         };
         if self.full && parameter == last { first } else { parameter }
     }
 
     /// The lowest parameter.
+    #[inline]
     pub(super) fn first(&self) -> f64 {
         self.inverse.domain().0
     }
@@ -125,12 +134,12 @@ impl Sector {
     /// What other directions are to a foot at `radius` from the centre and `distance` from the query.
     ///
     /// On a direction that is turned away by an angle, the square of the distance is larger by `2 radius rho (1 - cos)`.
-    pub(super) fn tie(&self, ray: &Ray, radius: f64, distance: f64, asked: Asked) -> Tie {
+    #[inline(always)]
+    pub(super) fn tie(&self, ray: &Ray, radius: f64, distance: f64, asked: &Asked) -> Tie {
         let DVec2 { x: cos, y: sin } = self.end;
         let excess = asked.gap * (2.0 * distance + asked.gap);
-        let widest = if cos > 0.0 { 2.0 * radius * sin } else { 2.0 * radius };
         // no direction is nearer than 1 - cos = rho less its own coordinate along the end
-        if widest <= asked.coincidence {
+        if radius * self.width <= asked.coincidence {
             return Tie::None;
         }
         let of = |more: f64| 2.0 * radius * more <= excess;

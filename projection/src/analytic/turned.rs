@@ -132,7 +132,8 @@ impl Turned {
         Some(Built { shape, axes, deviation: deviation + (-inner).max(0.0), radius: reach })
     }
 
-    pub(super) fn foot(&self, q: DVec3, asked: Asked, search: &mut Search<'_>) -> Option<Pair> {
+    #[inline(always)]
+    pub(super) fn foot(&self, q: DVec3, asked: &Asked, search: &mut Search<'_>) -> Option<Pair> {
         let ray = self.sector.nearest(q.truncate(), asked.noise);
         let foot = self.profile.foot(DVec2::new(ray.radial, q.z), ray.across * ray.across, asked, search)?;
         let radius = foot.x + self.sector.shift();
