@@ -53,26 +53,8 @@ impl Affine {
         (middle, extent)
     }
 
-    /// Around the `factor`-fold differences that `difference` takes of each table at every index.
-    fn around(
-        tables: [&[f64]; 4],
-        factor: usize,
-        indices: impl Iterator<Item = usize> + Clone,
-        difference: impl Fn(&[f64], usize) -> f64,
-    ) -> Self {
-        let mut affine = Self::default();
-        for (k, table) in tables.into_iter().enumerate() {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for at in indices.clone() {
-                let value = difference(table, at);
-                (low, high) = (if value < low { value } else { low }, if value > high { value } else { high });
-            }
-            if low <= high {
-                affine.middle[k] = factor as f64 * 0.5 * (low + high);
-                affine.extent[k] = factor as f64 * 0.5 * (high - low);
-            }
-        }
-        affine
+    fn negative(&self) -> Self {
+        Self { middle: self.middle.map(|x| -x), extent: self.extent }
     }
 
     /// The function whose constant lies in an interval and whose vector lies in a box.
@@ -94,15 +76,50 @@ pub(super) struct View {
     rounding: f64,
 }
 
-/// Ranges of the first and second derivatives of the squared distance to a leaf.
+/// One direction of a leaf or of one of its edges.
+#[derive(Debug, Clone, Copy, Default)]
+struct Along {
+    /// How the squared distance rises from the beginning, and how it falls to the end, over the parameter that it takes: secants, which vary less than slopes.
+    rise: Affine,
+    fall: Affine,
+    /// The second derivative.
+    bend: Affine,
+}
+
+impl Along {
+    /// The end that is nearest, as far as the secants tell; else both.
+    #[inline(always)]
+    fn lowest(&self, view: &View, factor: f64) -> (f64, f64) {
+        let error = factor * view.rounding;
+        let (middle, extent) = self.rise.at(view);
+        if middle >= extent + error {
+            return (0.0, 0.0);
+        }
+        let (middle, extent) = self.fall.at(view);
+        if middle >= extent + error { (1.0, 1.0) } else { (0.0, 1.0) }
+    }
+
+    /// The least second derivative.
+    #[inline(always)]
+    fn least_bend(&self, view: &View, factor: f64) -> f64 {
+        let (middle, extent) = self.bend.at(view);
+        middle - extent - factor * (factor - 1.0) * view.rounding
+    }
+}
+
+/// Ranges of the derivatives of the squared distance to a leaf.
 #[derive(Debug)]
 pub(super) struct Ranges {
-    s: Affine,
-    t: Affine,
-    ss: Affine,
+    /// Over the whole leaf.
+    s: Along,
+    t: Along,
     st: Affine,
-    tt: Affine,
-    factors: [f64; 5],
+    /// Over the edges at the two ends in t, along s; and at the two ends in s, along t.
+    edges_s: [Along; 2],
+    edges_t: [Along; 2],
+    /// Degrees of the form.
+    m: f64,
+    n: f64,
     degree: (usize, usize),
     radius: f64,
     /// What the rounding of a rational leaf is multiplied with.
@@ -114,22 +131,22 @@ impl Ranges {
     /// weights between two bounds.
     pub(super) fn new(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
         let Layout { m, n } = leaf.layout();
-        let factors = [m, n, m * (m - 1), m * n, n * n.saturating_sub(1)];
-        let [s, t, ss, st, tt] = if leaf.rational {
-            rational(&Boxes::around(leaf, axes, radius, weights))
-        } else {
-            polynomial(leaf, tables, axes, factors)
-        };
-        Self {
-            s,
-            t,
-            ss,
-            st,
-            tt,
-            factors: factors.map(|factor| factor as f64),
+        let empty = Self {
+            s: Along::default(),
+            t: Along::default(),
+            st: Affine::default(),
+            edges_s: Default::default(),
+            edges_t: Default::default(),
+            m: m as f64,
+            n: n as f64,
             degree: leaf.degree,
             radius,
             weights: (weights.1 / weights.0).powi(2),
+        };
+        if leaf.rational {
+            empty.rational(&Boxes::around(leaf, axes, radius, weights))
+        } else {
+            empty.polynomial(leaf, tables, axes)
         }
     }
 
@@ -140,89 +157,134 @@ impl Ranges {
         View { factors: (-2.0 * y).to_array(), rounding }
     }
 
-    /// The edge or corner of the leaf that is nearest, as far as the signs of the slopes tell; else all of it.
+    /// The edge or corner of the leaf that is nearest, as far as the secants tell; else all of it.
     #[inline(always)]
     pub(super) fn lowest(&self, view: &View) -> Domain {
-        let toward = |slope: &Affine, factor: f64| {
-            let (middle, extent) = slope.at(view);
-            let extent = extent + factor * view.rounding;
-            if middle >= extent {
-                (0.0, 0.0)
-            } else if middle <= -extent {
-                (1.0, 1.0)
-            } else {
-                (0.0, 1.0)
-            }
-        };
-        let t = if self.degree.1 == 0 { (0.0, 0.0) } else { toward(&self.t, self.factors[1]) };
-        Domain { s: toward(&self.s, self.factors[0]), t }
+        let mut s = self.s.lowest(view, self.m);
+        if self.degree.1 == 0 {
+            return Domain { s, t: (0.0, 0.0) };
+        }
+        let mut t = self.t.lowest(view, self.n);
+        // on an edge its own secants tell
+        match (s.0 == s.1, t.0 == t.1) {
+            (true, false) => t = self.edges_t[s.0 as usize].lowest(view, self.n),
+            (false, true) => s = self.edges_s[t.0 as usize].lowest(view, self.m),
+            _ => {}
+        }
+        Domain { s, t }
     }
 
     /// A lower bound of the Hessian in the directions in which the box has an extent, if the ranges show `D` convex there: with
     /// `rho² = max D_st² / (min D_ss min D_tt) < 1`, `H >= (1 - rho) diag(min D_ss, min D_tt)`.
     #[inline(always)]
     pub(super) fn curvature(&self, view: &View, domain: &Domain) -> Option<Curvature> {
-        let least = |curvature: &Affine, factor: f64| {
-            let (middle, extent) = curvature.at(view);
-            middle - extent - factor * view.rounding
-        };
         let (along_s, along_t) = (domain.s.0 < domain.s.1, domain.t.0 < domain.t.1);
-        let s = if along_s { least(&self.ss, self.factors[2]) } else { 0.0 };
-        let t = if along_t { least(&self.tt, self.factors[4]) } else { 0.0 };
         // not `<=`: a NaN must fail too
-        let positive = (!along_s || s > 0.0) && (!along_t || t > 0.0);
-        if !positive {
+        if !along_t {
+            let edge = if self.degree.1 == 0 { &self.s } else { &self.edges_s[domain.t.0 as usize] };
+            let s = edge.least_bend(view, self.m);
+            return (s > 0.0).then_some(Curvature { s, t: 0.0 });
+        }
+        if !along_s {
+            let t = self.edges_t[domain.s.0 as usize].least_bend(view, self.n);
+            return (t > 0.0).then_some(Curvature { s: 0.0, t });
+        }
+        let (s, t) = (self.s.least_bend(view, self.m), self.t.least_bend(view, self.n));
+        if !(s > 0.0 && t > 0.0) {
             return None;
         }
-        if !(along_s && along_t) {
-            return Some(Curvature { s, t });
-        }
         let (middle, extent) = self.st.at(view);
-        let mixed = middle.abs() + extent + self.factors[3] * view.rounding;
+        let mixed = middle.abs() + extent + self.m * self.n * view.rounding;
         let rho = mixed / (s * t).sqrt();
         (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
     }
-}
 
-/// From the tables of a polynomial leaf's form.
-fn polynomial(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, factors: [usize; 5]) -> [Affine; 5] {
-    let layout = leaf.layout();
-    let (Layout { m, n }, len) = (layout, layout.len());
-    let table = |k: usize| &tables[k * len..(k + 1) * len];
-    let mut turned = vec![0.0; 3 * len];
-    for at in 0..len {
-        let c1 = *axes * DVec3::new(table(1)[at], table(2)[at], table(3)[at]);
-        (turned[at], turned[len + at], turned[2 * len + at]) = (c1.x, c1.y, c1.z);
+    /// From the tables of a polynomial leaf's form.
+    fn polynomial(mut self, leaf: Shape<'_>, tables: &[f64], axes: &DMat3) -> Self {
+        let layout = leaf.layout();
+        let (Layout { m, n }, len) = (layout, layout.len());
+        let table = |k: usize| &tables[k * len..(k + 1) * len];
+        let mut turned = vec![0.0; 3 * len];
+        for at in 0..len {
+            let c1 = *axes * DVec3::new(table(1)[at], table(2)[at], table(3)[at]);
+            (turned[at], turned[len + at], turned[2 * len + at]) = (c1.x, c1.y, c1.z);
+        }
+        let tables = [table(0), &turned[..len], &turned[len..2 * len], &turned[2 * len..]];
+        // the coefficient at index k of the direction and l across it
+        let in_s = |k: usize, l: usize| layout.at(k, l);
+        let in_t = |k: usize, l: usize| layout.at(l, k);
+        self.s = along(tables, m, (0, n), in_s);
+        if n > 0 {
+            self.t = along(tables, n, (0, m), in_t);
+            self.edges_s = [along(tables, m, (0, 0), in_s), along(tables, m, (n, n), in_s)];
+            self.edges_t = [along(tables, n, (0, 0), in_t), along(tables, n, (m, m), in_t)];
+            self.st = around(tables, |table, visit| {
+                for i in 0..m {
+                    for j in 0..n {
+                        let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1)].map(|(i, j)| table[layout.at(i, j)]);
+                        visit(((a - b) - (c - d)) * (m * n) as f64);
+                    }
+                }
+            });
+        }
+        self
     }
-    let tables = [table(0), &turned[..len], &turned[len..2 * len], &turned[2 * len..]];
-    // all coefficients that have so many others after them in s and in t
-    let inside = |s: usize, t: usize| {
-        (0..(m + 1).saturating_sub(s)).flat_map(move |i| (0..(n + 1).saturating_sub(t)).map(move |j| layout.at(i, j)))
-    };
-    let (step_s, step_t) = (layout.at(1, 0), layout.at(0, 1));
-    let first = |step: usize| move |g: &[f64], at: usize| g[at + step] - g[at];
-    let second = |step: usize| move |g: &[f64], at: usize| g[at] - 2.0 * g[at + step] + g[at + 2 * step];
-    let mixed = |g: &[f64], at: usize| (g[at] - g[at + step_t]) - (g[at + step_s] - g[at + step_s + step_t]);
-    [
-        Affine::around(tables, factors[0], inside(1, 0), first(step_s)),
-        Affine::around(tables, factors[1], inside(0, 1), first(step_t)),
-        Affine::around(tables, factors[2], inside(2, 0), second(step_s)),
-        Affine::around(tables, factors[3], inside(1, 1), mixed),
-        Affine::around(tables, factors[4], inside(0, 2), second(step_t)),
-    ]
+
+    /// From the boxes around the derivatives of a rational leaf.
+    fn rational(mut self, Boxes { p, ps, pt, pss, pst, ptt }: &Boxes) -> Self {
+        let twice_sum =
+            |terms: &[(f64, f64)]| terms.iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + 2.0 * c, b + 2.0 * d));
+        let along = |first: &Aabb, second: &Aabb| {
+            let slope = Affine::of(twice_sum(&[dot(p, first)]), first);
+            let bend = Affine::of(twice_sum(&[square(first), dot(p, second)]), second);
+            Along { rise: slope, fall: slope.negative(), bend }
+        };
+        self.s = along(ps, pss);
+        self.t = along(pt, ptt);
+        (self.edges_s, self.edges_t) = ([self.s; 2], [self.t; 2]);
+        self.st = Affine::of(twice_sum(&[dot(ps, pt), dot(p, pst)]), pst);
+        self
+    }
 }
 
-/// From the boxes around the derivatives of a rational leaf.
-fn rational(boxes: &Boxes) -> [Affine; 5] {
-    let Boxes { p, ps, pt, pss, pst, ptt } = boxes;
-    let twice_sum = |terms: &[(f64, f64)]| terms.iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + 2.0 * c, b + 2.0 * d));
-    [
-        Affine::of(twice_sum(&[dot(p, ps)]), ps),
-        Affine::of(twice_sum(&[dot(p, pt)]), pt),
-        Affine::of(twice_sum(&[square(ps), dot(p, pss)]), pss),
-        Affine::of(twice_sum(&[dot(ps, pt), dot(p, pst)]), pst),
-        Affine::of(twice_sum(&[square(pt), dot(p, ptt)]), ptt),
-    ]
+/// Around all values that `each` visits of each of four tables.
+fn around(tables: [&[f64]; 4], each: impl Fn(&[f64], &mut dyn FnMut(f64))) -> Affine {
+    let mut affine = Affine::default();
+    for (k, table) in tables.into_iter().enumerate() {
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        each(table, &mut |value| {
+            (low, high) = (if value < low { value } else { low }, if value > high { value } else { high });
+        });
+        affine.middle[k] = 0.5 * (low + high);
+        affine.extent[k] = 0.5 * (high - low);
+    }
+    affine
+}
+
+/// One direction of degree `degree`, over a range of indices across it; `at` tells where a coefficient lies.
+fn along(
+    tables: [&[f64]; 4],
+    degree: usize,
+    across: (usize, usize),
+    at: impl Fn(usize, usize) -> usize + Copy,
+) -> Along {
+    let secants = |from: usize, indices: std::ops::Range<usize>| {
+        around(tables, |table, visit| {
+            for k in indices.clone() {
+                let share = degree as f64 / k.abs_diff(from) as f64;
+                (across.0..=across.1).for_each(|l| visit((table[at(k, l)] - table[at(from, l)]) * share));
+            }
+        })
+    };
+    let bend = around(tables, |table, visit| {
+        for k in 0..=degree - 2 {
+            for l in across.0..=across.1 {
+                let second = table[at(k, l)] - 2.0 * table[at(k + 1, l)] + table[at(k + 2, l)];
+                visit(second * (degree * (degree - 1)) as f64);
+            }
+        }
+    });
+    Along { rise: secants(0, 1..degree + 1), fall: secants(degree, 0..degree), bend }
 }
 
 /// The interval of the scalar product of vectors in two boxes.
