@@ -34,17 +34,11 @@ pub(super) struct Leaf {
     pub v: (f64, f64),
     pub bounds: Aabb,
     oriented: OrientedBox,
-    opened: OnceLock<Opened>,
+    ranges: OnceLock<Box<Ranges>>,
+    tables: OnceLock<Box<[f64]>>,
     /// The middle point and the pseudo-inverse of the derivatives there: a linear guess of the foot.
     middle: DVec3,
     inverse: [DVec3; 2],
-}
-
-/// What a leaf's first proof makes.
-#[derive(Debug)]
-pub(super) struct Opened {
-    pub tables: Box<[f64]>,
-    pub ranges: Ranges,
 }
 
 impl Leaf {
@@ -77,7 +71,8 @@ impl Leaf {
             v,
             bounds,
             oriented: OrientedBox::around(&local, along, across),
-            opened: OnceLock::new(),
+            ranges: OnceLock::new(),
+            tables: OnceLock::new(),
             middle: middle.point(),
             inverse: pseudo_inverse(middle.ps.truncate(), middle.pt.truncate()),
         }
@@ -91,13 +86,18 @@ impl Leaf {
         Shape { degree: self.degree, rational: self.rational, net: &self.net }
     }
 
-    /// Tables and ranges of the leaf's form; made when first asked for, as most leaves of a large entity never are.
-    pub(super) fn opened(&self) -> &Opened {
-        self.opened.get_or_init(|| {
-            let tables = form::tables(self.shape());
-            let ranges = Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, (self.lightest, self.heaviest));
-            Opened { tables, ranges }
+    /// Ranges of the squared distance to the leaf; made when first asked for, as most leaves of a large entity never are.
+    #[inline]
+    pub(super) fn ranges(&self) -> &Ranges {
+        self.ranges.get_or_init(|| {
+            let weights = (self.lightest, self.heaviest);
+            Box::new(Ranges::new(self.shape(), self.oriented.axes(), self.radius, weights))
         })
+    }
+
+    /// The tables of the leaf's form; made when first asked for, as the ranges prove most leaves.
+    pub(super) fn tables(&self) -> &[f64] {
+        self.tables.get_or_init(|| form::tables(self.shape()))
     }
 
     /// A vector along the axes of the oriented box.

@@ -29,26 +29,27 @@ use glam::{DMat3, DVec3};
 use perpend_kernel::Aabb;
 
 use super::convex::{CORRELATED, Curvature};
-use super::form::{Shape, rounding_bound};
+use super::form::{Shape, rounding_bound, tables};
 use super::net::Layout;
 use super::newton::Domain;
 use super::quotient::Boxes;
 
-/// An affine function of the query that varies over the leaf: the box around all of them.
+/// An affine function of the query that varies over the leaf: the box around all of them, in single precision and rounded outwards. Half the
+/// memory is half the time that large entities wait for it.
 #[derive(Debug, Clone, Copy, Default)]
 struct Affine {
-    middle: [f64; 4],
-    extent: [f64; 4],
+    middle: [f32; 4],
+    extent: [f32; 4],
 }
 
 impl Affine {
     /// The middle of the values at a query, and how far they may be from it.
     #[inline(always)]
     fn at(&self, view: &View) -> (f64, f64) {
-        let (mut middle, mut extent) = (self.middle[0], self.extent[0]);
+        let (mut middle, mut extent) = (f64::from(self.middle[0]), f64::from(self.extent[0]));
         for k in 0..3 {
-            middle += self.middle[k + 1] * view.factors[k];
-            extent += self.extent[k + 1] * view.factors[k].abs();
+            middle += f64::from(self.middle[k + 1]) * view.factors[k];
+            extent += f64::from(self.extent[k + 1]) * view.factors[k].abs();
         }
         (middle, extent)
     }
@@ -59,11 +60,21 @@ impl Affine {
 
     /// The function whose constant lies in an interval and whose vector lies in a box.
     fn of(constant: (f64, f64), vector: &Aabb) -> Self {
-        let (middle, extent) = (0.5 * (vector.min + vector.max), 0.5 * (vector.max - vector.min));
-        Self {
-            middle: [0.5 * (constant.0 + constant.1), middle.x, middle.y, middle.z],
-            extent: [0.5 * (constant.1 - constant.0), extent.x, extent.y, extent.z],
+        let (low, high) = (vector.min, vector.max);
+        Self::between([constant.0, low.x, low.y, low.z], [constant.1, high.x, high.y, high.z])
+    }
+
+    /// The box between these corners.
+    fn between(low: [f64; 4], high: [f64; 4]) -> Self {
+        let mut affine = Self::default();
+        for k in 0..4 {
+            let middle = (0.5 * (low[k] + high[k])) as f32;
+            let extent = (high[k] - f64::from(middle)).max(f64::from(middle) - low[k]).max(0.0);
+            affine.middle[k] = middle;
+            // above the extent, whichever way it was rounded
+            affine.extent[k] = (extent as f32).next_up();
         }
+        affine
     }
 }
 
@@ -127,9 +138,9 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    /// Of a leaf whose tables are `tables`, along the axes that are the rows of `axes`; its control points lie within `radius` of its origin and its
+    /// Of a leaf along the axes that are the rows of `axes`; its control points lie within `radius` of its origin and its
     /// weights between two bounds.
-    pub(super) fn new(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
+    pub(super) fn new(leaf: Shape<'_>, axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
         let Layout { m, n } = leaf.layout();
         let empty = Self {
             s: Along::default(),
@@ -146,7 +157,7 @@ impl Ranges {
         if leaf.rational {
             empty.rational(&Boxes::around(leaf, axes, radius, weights))
         } else {
-            empty.polynomial(leaf, tables, axes)
+            empty.polynomial(leaf, axes)
         }
     }
 
@@ -200,7 +211,8 @@ impl Ranges {
     }
 
     /// From the tables of a polynomial leaf's form.
-    fn polynomial(mut self, leaf: Shape<'_>, tables: &[f64], axes: &DMat3) -> Self {
+    fn polynomial(mut self, leaf: Shape<'_>, axes: &DMat3) -> Self {
+        let tables = tables(leaf);
         let layout = leaf.layout();
         let (Layout { m, n }, len) = (layout, layout.len());
         let table = |k: usize| &tables[k * len..(k + 1) * len];
@@ -249,16 +261,14 @@ impl Ranges {
 
 /// Around all values that `each` visits of each of four tables.
 fn around(tables: [&[f64]; 4], each: impl Fn(&[f64], &mut dyn FnMut(f64))) -> Affine {
-    let mut affine = Affine::default();
+    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
     for (k, table) in tables.into_iter().enumerate() {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let (low, high) = (&mut low[k], &mut high[k]);
         each(table, &mut |value| {
-            (low, high) = (if value < low { value } else { low }, if value > high { value } else { high });
+            (*low, *high) = (if value < *low { value } else { *low }, if value > *high { value } else { *high });
         });
-        affine.middle[k] = 0.5 * (low + high);
-        affine.extent[k] = 0.5 * (high - low);
     }
-    affine
+    Affine::between(low, high)
 }
 
 /// One direction of degree `degree`, over a range of indices across it; `at` tells where a coefficient lies.
