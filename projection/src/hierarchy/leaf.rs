@@ -95,7 +95,8 @@ impl Leaf {
     pub(super) fn opened(&self) -> &Opened {
         self.opened.get_or_init(|| {
             let tables = form::tables(self.shape());
-            let ranges = Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, (self.lightest, self.heaviest));
+            let ranges =
+                Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, (self.lightest, self.heaviest));
             Opened { tables, ranges }
         })
     }

@@ -48,9 +48,8 @@ impl Boxes {
         let st = net.second(&v, &v.derivative_t(), &net_t);
         let tt = net.second(&u, &u.derivative_t(), &net_t);
         let (n, count) = (p.max(q) as f64, ((p + 1) * (q + 1)) as f64);
-        let margin = |power: i32| {
-            200.0 * n * n * (count + 10.0) * ROUNDING * radius * (heaviest / lightest).powi(power)
-        };
+        let margin =
+            |power: i32| 200.0 * n * n * (count + 10.0) * ROUNDING * radius * (heaviest / lightest).powi(power);
         Self {
             p: wider(net.quotients(&net), margin(1)),
             ps: wider(v.quotients(&w2), margin(2)),
@@ -192,7 +191,9 @@ mod tests {
                     (jet.pst, boxes.pst),
                     (jet.ptt, boxes.ptt),
                 ];
-                for (k, (value, bounds)) in held.into_iter().enumerate().filter(|(k, _)| degree.1 > 0 || [0, 1, 3].contains(k)) {
+                for (k, (value, bounds)) in
+                    held.into_iter().enumerate().filter(|(k, _)| degree.1 > 0 || [0, 1, 3].contains(k))
+                {
                     let value = value.truncate();
                     let slack = DVec3::splat(1e-11 * (1.0 + value.abs().max_element()));
                     let wider = Aabb { min: bounds.min - slack, max: bounds.max + slack };
