@@ -22,7 +22,7 @@ type Equation = [f64; 5];
 
 /// The axis of rows of points: `rows[b][a]` lies on circle `b` at angle `a`.
 ///
-/// It starts at the circle through the three points of a row that are farthest from one line. Gauss–Newton steps then fit
+/// It starts at the circle through three points of a row that are far apart. Gauss–Newton steps then fit
 /// direction and place: radius and height are the same along a row and, with `meridians`, points of one angle lie in a plane
 /// with the axis, which tells far more of the axis where arcs are short. None where no row is bent.
 pub(super) fn fit(rows: &[Vec<DVec3>], meridians: bool) -> Option<Axis> {
@@ -144,26 +144,22 @@ fn extent(rows: &[Vec<DVec3>]) -> f64 {
 /// The step that makes the residuals least.
 fn step(equations: &[Equation]) -> Option<[f64; 4]> {
     let column = |k: usize| equations.iter().map(|e| e[k]).collect::<Vec<f64>>();
-    let x = least_squares((1..5).map(column).collect(), column(0))?;
+    let x = least_squares([1, 2, 3, 4].map(column), column(0))?;
     Some([-x[0], -x[1], -x[2], -x[3]])
 }
 
-/// The axis of the circle through three points of a row that span the largest triangle with its first one, and the size of
-/// that triangle; none where all lie on a line.
+/// The axis of the circle through the first point of a row, the point farthest from it, and the one farthest from the line through both; and twice
+/// the area of their triangle. None where all lie on a line.
 pub(super) fn through(row: &[DVec3]) -> Option<(Axis, f64)> {
     let a = row[0];
-    let far = |p: &DVec3| p.distance_squared(a);
-    let size = row.iter().map(far).fold(0.0, f64::max).sqrt();
-    let mut best = (0.0, a, a);
-    for (i, b) in row.iter().enumerate() {
-        for c in &row[i + 1..] {
-            let area = (*b - a).cross(*c - a).length();
-            if area > best.0 {
-                best = (area, *b, *c);
-            }
-        }
-    }
-    let (area, b, c) = best;
+    let farthest = |measure: &dyn Fn(DVec3) -> f64| {
+        row.iter().fold((0.0, a), |(most, far), p| {
+            let here = measure(*p);
+            if here > most { (here, *p) } else { (most, far) }
+        })
+    };
+    let (size, b) = farthest(&|p| p.distance(a));
+    let (area, c) = farthest(&|p| (b - a).cross(p - a).length());
     if area <= 1e-9 * size * size {
         return None;
     }

@@ -8,6 +8,7 @@
 
 mod along;
 mod axis;
+mod beside;
 mod cone;
 mod conic;
 mod curves;
@@ -59,8 +60,12 @@ pub fn believed_tolerance(stated: f64, definition: &Definition) -> f64 {
 pub fn recognise(definition: &Definition, tolerance: f64) -> Item<Kind> {
     let found = match definition {
         Definition::NurbsCurve(curve) => {
-            let candidates: [fn(&_) -> Option<Kind>; 3] = [line::candidate, conic::circle, ellipse::candidate];
-            candidates.iter().find_map(|candidate| accept(candidate(curve)?, definition, tolerance))
+            let accept = |kind: Option<Kind>| accept(kind?, definition, tolerance);
+            let conics = || {
+                let fitted = !beside::conics(curve, tolerance);
+                fitted.then(|| accept(conic::circle(curve)).or_else(|| accept(ellipse::candidate(curve))))?
+            };
+            accept(line::candidate(curve, tolerance)).or_else(conics)
         }
         Definition::NurbsSurface(surface) => of_surface(surface, definition, tolerance),
     };
@@ -71,7 +76,9 @@ pub fn recognise(definition: &Definition, tolerance: f64) -> Item<Kind> {
 fn of_surface(surface: &NurbsSurface, definition: &Definition, tolerance: f64) -> Option<(Kind, f64)> {
     let directions = [Direction::U, Direction::V];
     let accept = |kind: Option<Kind>| accept(kind?, definition, tolerance);
-    if let Some(found) = plane::candidates(surface).into_iter().find_map(|kind| accept(Some(kind))) {
+    if !beside::planes(surface, tolerance)
+        && let Some(found) = plane::candidates(surface).into_iter().find_map(|kind| accept(Some(kind)))
+    {
         return Some(found);
     }
     let turned = directions.map(|angular| revolution::pose(surface, angular, tolerance));
@@ -85,11 +92,11 @@ fn of_surface(surface: &NurbsSurface, definition: &Definition, tolerance: f64) -
             return Some(found);
         }
     }
-    directions
-        .iter()
-        .find_map(|along| accept(extrusion::candidate(surface, *along)))
+    let straight = || directions.into_iter().filter(|along| !beside::rulings(surface, *along, tolerance));
+    straight()
+        .find_map(|along| accept(extrusion::candidate(surface, along)))
         .or_else(|| turned.iter().flatten().find_map(|pose| accept(revolution::candidate(pose))))
-        .or_else(|| directions.iter().find_map(|ruling| accept(Some(Kind::Ruled { ruling: *ruling }))))
+        .or_else(|| straight().find_map(|ruling| accept(Some(Kind::Ruled { ruling }))))
 }
 
 fn accept(kind: Kind, definition: &Definition, tolerance: f64) -> Option<(Kind, f64)> {
