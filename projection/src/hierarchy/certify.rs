@@ -190,7 +190,7 @@ impl Proof<'_> {
         self.formed = state.tau();
         memory.nets.clear();
         memory.cells.clear();
-        form(leaf.level, leaf.shape(), &leaf.opened().tables, self.x, self.formed, &mut memory.nets);
+        form(leaf.level, leaf.shape(), leaf.tables(), self.x, self.formed, &mut memory.nets);
         state.done.pieces += 1;
         let layout = leaf.shape().layout();
         let rounding = rounding_bound(leaf.degree, self.x.length(), leaf.radius, self.formed, leaf.heaviest);

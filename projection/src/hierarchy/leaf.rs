@@ -34,34 +34,40 @@ pub(super) struct Leaf {
     pub v: (f64, f64),
     pub bounds: Aabb,
     oriented: OrientedBox,
-    opened: OnceLock<Opened>,
+    /// Made by the first glance at the leaf.
+    ranges: OnceLock<Box<Ranges>>,
+    /// Made by the first proof that needs the form.
+    tables: OnceLock<Box<[f64]>>,
     /// The middle point and the pseudo-inverse of the derivatives there: a linear guess of the foot.
     middle: DVec3,
     inverse: [DVec3; 2],
 }
 
-/// What a leaf's first proof makes.
-#[derive(Debug)]
-pub(super) struct Opened {
-    pub tables: Box<[f64]>,
-    pub ranges: Ranges,
-}
-
 impl Leaf {
-    pub(super) fn new(piece: Piece, rational: bool, level: Level) -> Self {
-        let Piece { degree, mut net, u, v } = piece;
+    pub(super) fn new(piece: Piece, level: Level) -> Self {
+        let mut local = piece.points();
+        let Piece { degree, mut net, rational, u, v } = piece;
         let (p, q) = degree;
-        let bounds = Aabb::around(net.iter().map(|h| cartesian(*h)));
+        let bounds = Aabb::around(local.iter().copied());
         let origin = bounds.centre();
-        let scale =
-            if rational { power_of_two_below(net.iter().fold(0.0_f64, |a, h| a.max(h.w))).recip() } else { 1.0 };
-        for h in &mut net {
-            let weight = h.w * scale;
-            *h = ((cartesian(*h) - origin) * weight).extend(weight);
+        let (mut lightest, mut heaviest) = (1.0, 1.0);
+        if rational {
+            (lightest, heaviest) = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+            let scale = power_of_two_below(heaviest).recip();
+            (lightest, heaviest) = (lightest * scale, heaviest * scale);
+            for (h, x) in net.iter_mut().zip(&mut local) {
+                let weight = h.w * scale;
+                *h = ((*x - origin) * weight).extend(weight);
+                *x = cartesian(*h);
+            }
+        } else {
+            for (h, x) in net.iter_mut().zip(&mut local) {
+                *x -= origin;
+                *h = x.extend(1.0);
+            }
         }
-        let local: Vec<DVec3> = net.iter().map(|h| cartesian(*h)).collect();
-        let radius = local.iter().fold(0.0_f64, |r, x| r.max(x.length()));
-        let (lightest, heaviest) = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+        let farthest = local.iter().map(|x| x.length_squared()).fold(0.0, |a, b| if b > a { b } else { a });
+        let radius = farthest.sqrt();
         let (along, across) = directions(&local, degree);
         let middle = Jet::at(level, &net, (p, q), rational, 0.5, 0.5);
         Self {
@@ -76,8 +82,9 @@ impl Leaf {
             u,
             v,
             bounds,
-            oriented: OrientedBox::around(&local, along, across),
-            opened: OnceLock::new(),
+            oriented: OrientedBox::around(&local, radius, along, across),
+            ranges: OnceLock::new(),
+            tables: OnceLock::new(),
             middle: middle.point(),
             inverse: pseudo_inverse(middle.ps.truncate(), middle.pt.truncate()),
         }
@@ -91,14 +98,17 @@ impl Leaf {
         Shape { degree: self.degree, rational: self.rational, net: &self.net }
     }
 
-    /// Tables and ranges of the leaf's form; made when first asked for, as most leaves of a large entity never are.
-    pub(super) fn opened(&self) -> &Opened {
-        self.opened.get_or_init(|| {
-            let tables = form::tables(self.shape());
-            let ranges =
-                Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, (self.lightest, self.heaviest));
-            Opened { tables, ranges }
+    /// The ranges; made when first asked for, as most leaves of a large entity never are.
+    pub(super) fn ranges(&self) -> &Ranges {
+        self.ranges.get_or_init(|| {
+            let weights = (self.lightest, self.heaviest);
+            Box::new(Ranges::new(self.shape(), self.oriented.axes(), self.radius, weights))
         })
+    }
+
+    /// The tables of the form; made when first asked for, as the ranges prove most leaves.
+    pub(super) fn tables(&self) -> &[f64] {
+        self.tables.get_or_init(|| form::tables(self.shape()))
     }
 
     /// A vector along the axes of the oriented box.
@@ -137,14 +147,14 @@ impl Leaf {
     /// The leaf as a piece again, about the entity's origin.
     fn piece(&self) -> Piece {
         let net = self.net.iter().map(|h| (h.truncate() + self.origin * h.w).extend(h.w)).collect();
-        Piece { degree: self.degree, net, u: self.u, v: self.v }
+        Piece { degree: self.degree, net, rational: self.rational, u: self.u, v: self.v }
     }
 
     /// Both halves in the longer direction, each about its own origin.
     pub(super) fn refine(&self) -> (Direction, [Self; 2]) {
         let piece = self.piece();
         let direction = piece.longer();
-        (direction, piece.halves(direction).map(|half| Self::new(half, self.rational, self.level)))
+        (direction, piece.halves(direction).map(|half| Self::new(half, self.level)))
     }
 
     /// The definition's parameters at `(s, t)`; the ends of the leaf exactly.

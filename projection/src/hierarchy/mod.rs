@@ -136,13 +136,12 @@ impl Hierarchy {
             Definition::NurbsCurve(curve) => (curve.degree(), 0),
             Definition::NurbsSurface(surface) => surface.degree(),
         };
-        let mut pieces = Piece::all(definition, &net);
+        let mut pieces = Piece::all(definition, &net, rational);
         for cusp in cusps {
             pieces = pieces.into_iter().flat_map(|piece| piece.cut(*cusp)).collect();
         }
         let level = Level::new();
-        let leaves: Vec<Leaf> =
-            split_bent(pieces).into_iter().map(|piece| Leaf::new(piece, rational, level)).collect();
+        let leaves: Vec<Leaf> = split_bent(pieces).into_iter().map(|piece| Leaf::new(piece, level)).collect();
         let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
         let whole = |range: fn(&Leaf) -> (f64, f64)| {
             leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))

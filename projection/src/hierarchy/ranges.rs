@@ -15,21 +15,21 @@
 //!
 //! with the box's middle `(a, b)` and half its extents. The vectors are taken along the axes of the leaf's oriented box, `y` being the query
 //! there: beside the leaf `y` points mostly along the normal, and what varies along the surface costs nothing. Of a polynomial leaf the boxes are
-//! those around the Bernstein coefficients, which the form's tables hold; of a rational one they come from the boxes around its derivatives
+//! those around the Bernstein coefficients of the form's tables; of a rational one they come from the boxes around its derivatives
 //! ([`quotient`](super::quotient)).
 //!
 //! # Rounding
 //!
 //! Of a polynomial leaf a coefficient of the form errs by at most [`rounding_bound`], a first difference by twice and a second by four times that, made of
-//! the same tables; the axes turn vectors and query with errors of less than `32 u` of their product, `|c1|` of a difference being at most
+//! the same coefficients; the axes turn vectors and query with errors of less than `32 u` of their product, `|c1|` of a difference being at most
 //! `4 r`. Twice the largest of these bounds pays for it all, and times the squared ratio of the weights for the products of a rational leaf's boxes,
 //! whose own rounding is in the boxes.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, DVec4};
 use perpend_kernel::Aabb;
 
 use super::convex::{CORRELATED, Curvature};
-use super::form::{Shape, rounding_bound};
+use super::form::{Coefficients, Shape, rounding_bound};
 use super::net::Layout;
 use super::newton::Domain;
 use super::quotient::Boxes;
@@ -53,23 +53,28 @@ impl Affine {
         (middle, extent)
     }
 
-    /// Around the `factor`-fold differences that `difference` takes of each table at every index.
+    /// Around the `factor`-fold differences that `difference` takes at so many rows and columns of a net whose rows are `width` long.
+    #[inline(always)]
     fn around(
-        tables: [&[f64]; 4],
+        (rows, columns, width): (usize, usize, usize),
         factor: usize,
-        indices: impl Iterator<Item = usize> + Clone,
-        difference: impl Fn(&[f64], usize) -> f64,
+        difference: impl Fn(usize) -> DVec4,
     ) -> Self {
-        let mut affine = Self::default();
-        for (k, table) in tables.into_iter().enumerate() {
-            let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-            for at in indices.clone() {
-                let value = difference(table, at);
-                (low, high) = (if value < low { value } else { low }, if value > high { value } else { high });
+        let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
+        for row in 0..rows {
+            for at in row * width..row * width + columns {
+                let value = difference(at).to_array();
+                for k in 0..4 {
+                    low[k] = if value[k] < low[k] { value[k] } else { low[k] };
+                    high[k] = if value[k] > high[k] { value[k] } else { high[k] };
+                }
             }
-            if low <= high {
-                affine.middle[k] = factor as f64 * 0.5 * (low + high);
-                affine.extent[k] = factor as f64 * 0.5 * (high - low);
+        }
+        let mut affine = Self::default();
+        if rows > 0 && columns > 0 {
+            for k in 0..4 {
+                affine.middle[k] = factor as f64 * 0.5 * (low[k] + high[k]);
+                affine.extent[k] = factor as f64 * 0.5 * (high[k] - low[k]);
             }
         }
         affine
@@ -110,15 +115,15 @@ pub(super) struct Ranges {
 }
 
 impl Ranges {
-    /// Of a leaf whose tables are `tables`, along the axes that are the rows of `axes`; its control points lie within `radius` of its origin and its
+    /// Of a leaf, along the axes that are the rows of `axes`; its control points lie within `radius` of its origin and its
     /// weights between two bounds.
-    pub(super) fn new(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
+    pub(super) fn new(leaf: Shape<'_>, axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
         let Layout { m, n } = leaf.layout();
         let factors = [m, n, m * (m - 1), m * n, n * n.saturating_sub(1)];
         let [s, t, ss, st, tt] = if leaf.rational {
             rational(&Boxes::around(leaf, axes, radius, weights))
         } else {
-            polynomial(leaf, tables, axes, factors)
+            polynomial(leaf, axes, factors)
         };
         Self {
             s,
@@ -184,31 +189,29 @@ impl Ranges {
     }
 }
 
-/// From the tables of a polynomial leaf's form.
-fn polynomial(leaf: Shape<'_>, tables: &[f64], axes: &DMat3, factors: [usize; 5]) -> [Affine; 5] {
-    let layout = leaf.layout();
-    let (Layout { m, n }, len) = (layout, layout.len());
-    let table = |k: usize| &tables[k * len..(k + 1) * len];
-    let mut turned = vec![0.0; 3 * len];
-    for at in 0..len {
-        let c1 = *axes * DVec3::new(table(1)[at], table(2)[at], table(3)[at]);
-        (turned[at], turned[len + at], turned[2 * len + at]) = (c1.x, c1.y, c1.z);
-    }
-    let tables = [table(0), &turned[..len], &turned[len..2 * len], &turned[2 * len..]];
+/// From the coefficients of a polynomial leaf's form.
+fn polynomial(leaf: Shape<'_>, axes: &DMat3, factors: [usize; 5]) -> [Affine; 5] {
+    let (Layout { m, n }, Coefficients { squares, vectors }) = (leaf.layout(), Coefficients::of(leaf));
+    let turned: Vec<DVec4> = squares
+        .iter()
+        .zip(&vectors)
+        .map(|(c0, c1)| {
+            let c1 = *axes * c1.truncate();
+            DVec4::new(*c0, c1.x, c1.y, c1.z)
+        })
+        .collect();
+    let (g, width) = (&turned[..], n + 1);
     // all coefficients that have so many others after them in s and in t
-    let inside = |s: usize, t: usize| {
-        (0..(m + 1).saturating_sub(s)).flat_map(move |i| (0..(n + 1).saturating_sub(t)).map(move |j| layout.at(i, j)))
-    };
-    let (step_s, step_t) = (layout.at(1, 0), layout.at(0, 1));
-    let first = |step: usize| move |g: &[f64], at: usize| g[at + step] - g[at];
-    let second = |step: usize| move |g: &[f64], at: usize| g[at] - 2.0 * g[at + step] + g[at + 2 * step];
-    let mixed = |g: &[f64], at: usize| (g[at] - g[at + step_t]) - (g[at + step_s] - g[at + step_s + step_t]);
+    let inside = |s: usize, t: usize| ((m + 1).saturating_sub(s), (n + 1).saturating_sub(t), width);
+    let first = |step: usize| move |at: usize| g[at + step] - g[at];
+    let second = |step: usize| move |at: usize| g[at] - 2.0 * g[at + step] + g[at + 2 * step];
+    let mixed = |at: usize| (g[at] - g[at + 1]) - (g[at + width] - g[at + width + 1]);
     [
-        Affine::around(tables, factors[0], inside(1, 0), first(step_s)),
-        Affine::around(tables, factors[1], inside(0, 1), first(step_t)),
-        Affine::around(tables, factors[2], inside(2, 0), second(step_s)),
-        Affine::around(tables, factors[3], inside(1, 1), mixed),
-        Affine::around(tables, factors[4], inside(0, 2), second(step_t)),
+        Affine::around(inside(1, 0), factors[0], first(width)),
+        Affine::around(inside(0, 1), factors[1], first(1)),
+        Affine::around(inside(2, 0), factors[2], second(width)),
+        Affine::around(inside(1, 1), factors[3], mixed),
+        Affine::around(inside(0, 2), factors[4], second(1)),
     ]
 }
 
