@@ -125,9 +125,17 @@ fn eliminate(group: &mut [Equation], shares: &[f64]) {
     if norm == 0.0 {
         return;
     }
-    for column in 0..5 {
-        let mean = group.iter().zip(shares).map(|(e, s)| e[column] * s).sum::<f64>() / norm;
-        group.iter_mut().zip(shares).for_each(|(e, s)| e[column] -= mean * s);
+    let mut means = [0.0; 5];
+    for (e, s) in group.iter().zip(shares) {
+        for k in 0..5 {
+            means[k] += e[k] * s;
+        }
+    }
+    let means = means.map(|sum| sum / norm);
+    for (e, s) in group.iter_mut().zip(shares) {
+        for k in 0..5 {
+            e[k] -= means[k] * s;
+        }
     }
 }
 

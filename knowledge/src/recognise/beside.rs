@@ -33,8 +33,12 @@ pub(super) fn conics(curve: &NurbsCurve, tolerance: f64) -> bool {
         return false;
     }
     let off = off(tolerance, extent);
+    let on_a_circle = |p: &DVec3| (p.distance(plane.centre) - row[0].distance(plane.centre)).abs() <= off;
     if row.iter().any(|p| (*p - row[0]).dot(plane.axis).abs() > off) {
         return true;
+    }
+    if row.iter().all(on_a_circle) {
+        return false;
     }
     let (x, y) = plane.axis.any_orthonormal_pair();
     let flat: Vec<DVec2> =

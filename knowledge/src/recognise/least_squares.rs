@@ -6,7 +6,6 @@
 /// Problems, §2.4), so that conditions are not squared as by normal equations. A column that depends on those before it gets
 /// the share 0. None where numbers overflow.
 pub(super) fn least_squares<const N: usize>(mut columns: [Vec<f64>; N], mut right: Vec<f64>) -> Option<[f64; N]> {
-    let dot = |a: &[f64], b: &[f64]| a.iter().zip(b).map(|(x, y)| x * y).sum::<f64>();
     // r[k] holds column k of the triangle
     let mut r = [[0.0; N]; N];
     for (k, triangle) in r.iter_mut().enumerate() {
@@ -41,4 +40,16 @@ pub(super) fn least_squares<const N: usize>(mut columns: [Vec<f64>; N], mut righ
         }
     }
     x.iter().all(|x| x.is_finite()).then_some(x)
+}
+
+/// The scalar product, in four sums: one alone would wait for each of its additions.
+fn dot(a: &[f64], b: &[f64]) -> f64 {
+    let (mut sums, (a, rest_a), (b, rest_b)) = ([0.0; 4], a.as_chunks::<4>(), b.as_chunks::<4>());
+    for (x, y) in a.iter().zip(b) {
+        for k in 0..4 {
+            sums[k] += x[k] * y[k];
+        }
+    }
+    let rest: f64 = rest_a.iter().zip(rest_b).map(|(x, y)| x * y).sum();
+    (sums[0] + sums[1]) + (sums[2] + sums[3]) + rest
 }

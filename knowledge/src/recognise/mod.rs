@@ -58,6 +58,13 @@ pub fn believed_tolerance(stated: f64, definition: &Definition) -> f64 {
 /// Angles of a recognised shape start at 0 and ascend, but for a cone, whose axis runs from its apex: there they may descend.
 #[must_use]
 pub fn recognise(definition: &Definition, tolerance: f64) -> Item<Kind> {
+    let (value, gap) = class_and_gap(definition, tolerance);
+    Item { value, basis: Basis::Proved { gap }, tolerance, of: definition.fingerprint() }
+}
+
+/// The class and its gap alone, as for [`recognise`]: what needs no record is spared the fingerprint.
+#[must_use]
+pub fn class_and_gap(definition: &Definition, tolerance: f64) -> (Kind, f64) {
     let found = match definition {
         Definition::NurbsCurve(curve) => {
             let accept = |kind: Option<Kind>| accept(kind?, definition, tolerance);
@@ -69,8 +76,7 @@ pub fn recognise(definition: &Definition, tolerance: f64) -> Item<Kind> {
         }
         Definition::NurbsSurface(surface) => of_surface(surface, definition, tolerance),
     };
-    let (value, gap) = found.unwrap_or((Kind::FreeForm, 0.0));
-    Item { value, basis: Basis::Proved { gap }, tolerance, of: definition.fingerprint() }
+    found.unwrap_or((Kind::FreeForm, 0.0))
 }
 
 fn of_surface(surface: &NurbsSurface, definition: &Definition, tolerance: f64) -> Option<(Kind, f64)> {
