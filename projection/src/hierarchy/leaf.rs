@@ -44,31 +44,32 @@ pub(super) struct Leaf {
 }
 
 impl Leaf {
-    pub(super) fn new(piece: Piece, level: Level) -> Self {
-        let mut local = piece.points();
+    /// `points` is working memory.
+    pub(super) fn new(piece: Piece, level: Level, points: &mut Vec<DVec3>) -> Self {
+        piece.write_points(points);
         let Piece { degree, mut net, rational, u, v } = piece;
         let (p, q) = degree;
-        let bounds = Aabb::around(local.iter().copied());
+        let bounds = Aabb::around(points.iter().copied());
         let origin = bounds.centre();
         let (mut lightest, mut heaviest) = (1.0, 1.0);
         if rational {
             (lightest, heaviest) = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
             let scale = power_of_two_below(heaviest).recip();
             (lightest, heaviest) = (lightest * scale, heaviest * scale);
-            for (h, x) in net.iter_mut().zip(&mut local) {
+            for (h, x) in net.iter_mut().zip(points.iter_mut()) {
                 let weight = h.w * scale;
                 *h = ((*x - origin) * weight).extend(weight);
                 *x = cartesian(*h);
             }
         } else {
-            for (h, x) in net.iter_mut().zip(&mut local) {
+            for (h, x) in net.iter_mut().zip(points.iter_mut()) {
                 *x -= origin;
                 *h = x.extend(1.0);
             }
         }
-        let farthest = local.iter().map(|x| x.length_squared()).fold(0.0, |a, b| if b > a { b } else { a });
+        let farthest = points.iter().map(|x| x.length_squared()).fold(0.0, |a, b| if b > a { b } else { a });
         let radius = farthest.sqrt();
-        let (along, across) = directions(&local, degree);
+        let (along, across) = directions(points, degree);
         let middle = Jet::at(level, &net, (p, q), rational, 0.5, 0.5);
         Self {
             degree,
@@ -82,7 +83,7 @@ impl Leaf {
             u,
             v,
             bounds,
-            oriented: OrientedBox::around(&local, radius, along, across),
+            oriented: OrientedBox::around(points, radius, along, across),
             ranges: OnceLock::new(),
             tables: OnceLock::new(),
             middle: middle.point(),
@@ -154,7 +155,8 @@ impl Leaf {
     pub(super) fn refine(&self) -> (Direction, [Self; 2]) {
         let piece = self.piece();
         let direction = piece.longer();
-        (direction, piece.halves(direction).map(|half| Self::new(half, self.level)))
+        let mut points = Vec::with_capacity(piece.net.len());
+        (direction, piece.halves(direction).map(|half| Self::new(half, self.level, &mut points)))
     }
 
     /// The definition's parameters at `(s, t)`; the ends of the leaf exactly.
@@ -185,8 +187,14 @@ fn directions(points: &[DVec3], (p, q): (usize, usize)) -> (DVec3, DVec3) {
         return (along, c - a + d - b);
     }
     let chord = along.normalize_or_zero();
-    let rejected = points.iter().map(|x| (*x - a) - (*x - a).dot(chord) * chord);
-    let across = rejected.fold(DVec3::ZERO, |far, x| if x.length_squared() > far.length_squared() { x } else { far });
+    let (mut across, mut farthest) = (DVec3::ZERO, 0.0);
+    for x in points {
+        let rejected = (*x - a) - (*x - a).dot(chord) * chord;
+        let length = rejected.length_squared();
+        if length > farthest {
+            (across, farthest) = (rejected, length);
+        }
+    }
     (along, across)
 }
 

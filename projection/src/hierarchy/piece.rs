@@ -3,7 +3,6 @@
 use glam::{DVec3, DVec4};
 use perpend_kernel::bezier::{curve_pieces, surface_pieces};
 use perpend_kernel::{Definition, Direction, cartesian};
-use smallvec::SmallVec;
 
 /// A homogeneous Bézier piece of degree `(p, q)` over a box of the definition's parameters; a curve has `q = 0`.
 #[derive(Debug, Clone)]
@@ -17,8 +16,6 @@ pub(super) struct Piece {
     pub v: (f64, f64),
 }
 
-/// Control points of a piece; of the usual degrees without an allocation.
-pub(super) type Points = SmallVec<[DVec3; 16]>;
 
 impl Piece {
     /// The pieces of a definition whose homogeneous net in some coordinates is `net`, split at every knot.
@@ -49,17 +46,21 @@ impl Piece {
         }
     }
 
-    /// The control points.
-    pub(super) fn points(&self) -> Points {
-        let point = |h: &DVec4| if self.rational { cartesian(*h) } else { h.truncate() };
-        self.net.iter().map(point).collect()
+    /// Its control points, in place of what `points` held.
+    pub(super) fn write_points(&self, points: &mut Vec<DVec3>) {
+        points.clear();
+        if self.rational {
+            points.extend(self.net.iter().map(|h| cartesian(*h)));
+        } else {
+            points.extend(self.net.iter().map(|h| h.truncate()));
+        }
     }
 
     /// Both halves in a direction, by de Casteljau: halving is exact, one rounding a level.
-    pub(super) fn halves(&self, direction: Direction) -> [Self; 2] {
+    pub(super) fn halves(self, direction: Direction) -> [Self; 2] {
         let (p, q) = self.degree;
         let width = q + 1;
-        let (mut low, mut high) = (self.clone(), self.clone());
+        let (mut low, mut high) = (self.clone(), self);
         let (lines, degree, step, across) = match direction {
             Direction::U => (width, p, width, 1),
             Direction::V => (p + 1, q, 1, width),
@@ -77,11 +78,11 @@ impl Piece {
         }
         match direction {
             Direction::U => {
-                low.u.1 = middle(self.u);
+                low.u.1 = middle(low.u);
                 high.u.0 = low.u.1;
             }
             Direction::V => {
-                low.v.1 = middle(self.v);
+                low.v.1 = middle(low.v);
                 high.v.0 = low.v.1;
             }
         }
@@ -111,7 +112,8 @@ impl Piece {
     /// The direction in which the control net is longer.
     pub(super) fn longer(&self) -> Direction {
         let (p, q) = self.degree;
-        let points = self.points();
+        let mut points = Vec::with_capacity(self.net.len());
+        self.write_points(&mut points);
         let point = |i: usize, j: usize| points[i * (q + 1) + j];
         let along_u = |j: usize| (1..=p).map(|i| point(i, j).distance(point(i - 1, j))).sum::<f64>();
         let along_v = |i: usize| (1..=q).map(|j| point(i, j).distance(point(i, j - 1))).sum::<f64>();
@@ -126,11 +128,11 @@ impl Piece {
     /// A piece is split while it departs too far from an affine map: while `(n - 1) max|second difference| / max|first
     /// difference|` of the net exceeds 1 on a curve and 0.8 times the sine of the angle between the directions on a surface
     /// (measured: half and twice those cost 5 to 25 % more; skew is what hurts most), or while its weights are more than 16
-    /// apart.
-    pub(super) fn wants_split(&self) -> Option<Direction> {
+    /// apart. `points` is working memory.
+    pub(super) fn wants_split(&self, points: &mut Vec<DVec3>) -> Option<Direction> {
         let (p, q) = self.degree;
-        let points = self.points();
-        let [mut bend_u, mut bend_v] = bends(&points, self.degree);
+        self.write_points(points);
+        let [mut bend_u, mut bend_v] = bends(points, self.degree);
         if let Some(direction) = self.uneven() {
             *(if direction == Direction::U { &mut bend_u } else { &mut bend_v }) += 1.0;
         }
