@@ -33,7 +33,7 @@ pub(super) fn candidate(curve: &NurbsCurve) -> Option<Kind> {
         axis = -axis;
         sweep = turned(axis)?;
     }
-    let sweep = full_if_closed(sweep, super::default_tolerance(&curve.clone().into()) * 1e-2 / radii.0);
+    let sweep = full_if_closed(sweep, super::tolerance_in(curve.control_box()) * 1e-2 / radii.0);
     Some(Kind::Ellipse { centre: origin + centre, axis, xdir, radii, sweep })
 }
 

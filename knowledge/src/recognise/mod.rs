@@ -28,7 +28,7 @@ mod torus;
 mod turned;
 mod weights;
 
-use perpend_kernel::{Definition, Direction, NurbsSurface};
+use perpend_kernel::{Aabb, Definition, Direction, NurbsSurface};
 
 pub use refuted::Refuted;
 
@@ -39,7 +39,12 @@ use crate::item::{Basis, Item};
 /// coordinate, which the refinements of a definition far from the origin (degrees, knots, parametrisation) add up to.
 #[must_use]
 pub fn default_tolerance(definition: &Definition) -> f64 {
-    1e-10 * definition.size() + 64.0 * f64::EPSILON * definition.reach()
+    tolerance_in(definition.control_box())
+}
+
+/// The same, from the box of the control points.
+fn tolerance_in(bounds: Aabb) -> f64 {
+    1e-10 * bounds.diagonal() + 64.0 * f64::EPSILON * bounds.reach()
 }
 
 /// The deviation within which a class that a record states is believed: what the record names, but not less than
