@@ -19,7 +19,9 @@ impl Aabb {
     /// The smallest box around `points`.
     #[must_use]
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, p| Self { min: least(p, bounds.min), max: greatest(p, bounds.max) })
+        points
+            .into_iter()
+            .fold(Self::EMPTY, |bounds, p| Self { min: least(p, bounds.min), max: greatest(p, bounds.max) })
     }
 
     /// The smallest box around both.

@@ -17,6 +17,9 @@ const PATIENCE: usize = 5;
 /// A residual above this share of the rows' extent is bad: a billion times what a class is accepted with.
 const HOPELESS: f64 = 1e-2;
 
+/// The step after one below this is of its square: nothing, and what rounding makes of it.
+const TINY: f64 = 1e-13;
+
 /// What is left to fit at a point: the residual and its derivatives by two turns and two shifts of the axis.
 type Equation = [f64; 5];
 
@@ -42,8 +45,8 @@ pub(super) fn fit(rows: &[Vec<DVec3>], meridians: bool) -> Option<Axis> {
         }
         let length = x[0].hypot(x[1]).max(x[2].hypot(x[3]) / axis.largest_radius(rows));
         axis = moved;
-        // steps that shrink no more are rounding
-        if length < 1e-6 && length >= 0.25 * before || length < f64::EPSILON {
+        // steps that shrink no more are rounding, and so is what follows a tiny one
+        if length < 1e-6 && length >= 0.25 * before || length < TINY {
             if with_meridians == meridians {
                 break;
             }
@@ -80,9 +83,9 @@ impl Axis {
     fn equations(&self, rows: &[Vec<DVec3>], meridians: bool) -> Vec<Equation> {
         let (u, v) = self.axis.any_orthonormal_pair();
         let least = 1e-6 * self.largest_radius(rows);
-        let mut all = Vec::new();
+        let mut all = Vec::with_capacity(3 * rows.len() * rows[0].len());
         for row in rows {
-            let (mut radial, mut axial) = (Vec::new(), Vec::new());
+            let [mut radial, mut axial] = [0, 1].map(|_| Vec::with_capacity(row.len()));
             for p in row {
                 let arm = *p - self.centre;
                 let (z, across) = (arm.dot(self.axis), self.across(*p));
@@ -104,7 +107,7 @@ impl Axis {
             for a in 0..rows[0].len() {
                 let side = self.axis.cross(self.meridian(rows, a));
                 let (x, y) = (side.dot(u), side.dot(v));
-                let (mut group, mut radii) = (Vec::new(), Vec::new());
+                let (mut group, mut radii) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
                 for row in rows {
                     let arm = row[a] - self.centre;
                     let z = arm.dot(self.axis);

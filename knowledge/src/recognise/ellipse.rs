@@ -51,13 +51,8 @@ impl Equation {
 /// The conic near to points: the least squares of its equation.
 pub(super) fn equation(points: &[DVec2]) -> Option<Equation> {
     let column = |of: fn(&DVec2) -> f64| points.iter().map(of).collect::<Vec<f64>>();
-    let columns = [
-        column(|_| 1.0),
-        column(|p| p.x),
-        column(|p| p.y),
-        column(|p| p.x * p.x - p.y * p.y),
-        column(|p| p.x * p.y),
-    ];
+    let columns =
+        [column(|_| 1.0), column(|p| p.x), column(|p| p.y), column(|p| p.x * p.x - p.y * p.y), column(|p| p.x * p.y)];
     least_squares(columns, column(|p| -0.5 * p.length_squared())).map(Equation)
 }
 

@@ -3,10 +3,10 @@
 use glam::DVec3;
 use perpend_kernel::{Direction, NurbsSurface};
 
-use super::{axis, beside};
 use super::conic::full_if_closed;
 use super::curves::parameters;
 use super::turned::{Turned, UNIT, other};
+use super::{axis, beside};
 use crate::classification::Kind;
 
 /// A surface as it turns about an axis that fits it.

@@ -16,7 +16,6 @@ pub(super) struct Piece {
     pub v: (f64, f64),
 }
 
-
 impl Piece {
     /// The pieces of a definition whose homogeneous net in some coordinates is `net`, split at every knot.
     pub(super) fn all(definition: &Definition, net: &[DVec4], rational: bool) -> Vec<Self> {
@@ -37,7 +36,7 @@ impl Piece {
                     .map(|piece| Self {
                         degree: piece.degree,
                         net: piece.points,
-                    rational,
+                        rational,
                         u: (piece.spans.0.start, piece.spans.0.end),
                         v: (piece.spans.1.start, piece.spans.1.end),
                     })
@@ -137,11 +136,8 @@ impl Piece {
             *(if direction == Direction::U { &mut bend_u } else { &mut bend_v }) += 1.0;
         }
         let corner = |i: usize, j: usize| points[i * (q + 1) + j];
-        let threshold = if q == 0 {
-            1.0
-        } else {
-            0.8 * sine_of_skew([corner(0, 0), corner(p, 0), corner(0, q), corner(p, q)])
-        };
+        let threshold =
+            if q == 0 { 1.0 } else { 0.8 * sine_of_skew([corner(0, 0), corner(p, 0), corner(0, q), corner(p, q)]) };
         let largest = bend_u.max(bend_v);
         (largest > threshold).then_some(if bend_u >= bend_v { Direction::U } else { Direction::V })
     }
@@ -185,10 +181,7 @@ fn bends(points: &[DVec3], (p, q): (usize, usize)) -> [f64; 2] {
     let (length_u, length_v) = (u.first.sqrt() * p as f64, v.first.sqrt() * q as f64);
     // a direction that is a thousand times shorter than the other cannot bend the piece
     let shortest = 1e-3 * length_u.max(length_v);
-    [
-        if length_u < shortest { 0.0 } else { u.measure(p) },
-        if length_v < shortest { 0.0 } else { v.measure(q) },
-    ]
+    [if length_u < shortest { 0.0 } else { u.measure(p) }, if length_v < shortest { 0.0 } else { v.measure(q) }]
 }
 
 /// Sine of the angle between the mean u and the mean v direction of a net with these corners, at least 0.14.

@@ -128,8 +128,7 @@ impl Polynomial {
         let mut result = Self::zero((p, q.saturating_sub(1)));
         for i in 0..=p {
             for j in 0..q {
-                result.coefficients[i * q + j] =
-                    (j + 1) as f64 * self.at(i, j + 1) - (q - j) as f64 * self.at(i, j);
+                result.coefficients[i * q + j] = (j + 1) as f64 * self.at(i, j + 1) - (q - j) as f64 * self.at(i, j);
             }
         }
         result
