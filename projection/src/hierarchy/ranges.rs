@@ -15,21 +15,21 @@
 //!
 //! with the box's middle `(a, b)` and half its extents. The vectors are taken along the axes of the leaf's oriented box, `y` being the query
 //! there: beside the leaf `y` points mostly along the normal, and what varies along the surface costs nothing. Of a polynomial leaf the boxes are
-//! those around the Bernstein coefficients, which the form's tables hold; of a rational one they come from the boxes around its derivatives
+//! those around the Bernstein coefficients of the form's tables; of a rational one they come from the boxes around its derivatives
 //! ([`quotient`](super::quotient)).
 //!
 //! # Rounding
 //!
 //! Of a polynomial leaf a coefficient of the form errs by at most [`rounding_bound`], a first difference by twice and a second by four times that, made of
-//! the same tables; the axes turn vectors and query with errors of less than `32 u` of their product, `|c1|` of a difference being at most
+//! the same coefficients; the axes turn vectors and query with errors of less than `32 u` of their product, `|c1|` of a difference being at most
 //! `4 r`. Twice the largest of these bounds pays for it all, and times the squared ratio of the weights for the products of a rational leaf's boxes,
 //! whose own rounding is in the boxes.
 
-use glam::{DMat3, DVec3};
+use glam::{DMat3, DVec3, DVec4};
 use perpend_kernel::Aabb;
 
 use super::convex::{CORRELATED, Curvature};
-use super::form::{Shape, rounding_bound, tables};
+use super::form::{Coefficients, Shape, rounding_bound};
 use super::net::Layout;
 use super::newton::Domain;
 use super::quotient::Boxes;
@@ -210,34 +210,27 @@ impl Ranges {
         (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
     }
 
-    /// From the tables of a polynomial leaf's form.
+    /// From the coefficients of a polynomial leaf's form.
     fn polynomial(mut self, leaf: Shape<'_>, axes: &DMat3) -> Self {
-        let tables = tables(leaf);
-        let layout = leaf.layout();
-        let (Layout { m, n }, len) = (layout, layout.len());
-        let table = |k: usize| &tables[k * len..(k + 1) * len];
-        let mut turned = vec![0.0; 3 * len];
-        for at in 0..len {
-            let c1 = *axes * DVec3::new(table(1)[at], table(2)[at], table(3)[at]);
-            (turned[at], turned[len + at], turned[2 * len + at]) = (c1.x, c1.y, c1.z);
-        }
-        let tables = [table(0), &turned[..len], &turned[len..2 * len], &turned[2 * len..]];
-        // the coefficient at index k of the direction and l across it
-        let in_s = |k: usize, l: usize| layout.at(k, l);
-        let in_t = |k: usize, l: usize| layout.at(l, k);
-        self.s = along(tables, m, (0, n), in_s);
+        let (Layout { m, n }, Coefficients { squares, vectors }) = (leaf.layout(), Coefficients::of(leaf));
+        let turned = squares.iter().zip(&vectors).map(|(c0, c1)| {
+            let c1 = *axes * c1.truncate();
+            DVec4::new(*c0, c1.x, c1.y, c1.z)
+        });
+        let (g, width): (Vec<DVec4>, usize) = (turned.collect(), n + 1);
+        let lines = |degree: usize, step: usize, across: usize| Lines { g: &g, degree, step, across };
+        self.s = lines(m, width, 1).along(0..width);
         if n > 0 {
-            self.t = along(tables, n, (0, m), in_t);
-            self.edges_s = [along(tables, m, (0, 0), in_s), along(tables, m, (n, n), in_s)];
-            self.edges_t = [along(tables, n, (0, 0), in_t), along(tables, n, (m, m), in_t)];
-            self.st = around(tables, |table, visit| {
-                for i in 0..m {
-                    for j in 0..n {
-                        let [a, b, c, d] = [(i, j), (i, j + 1), (i + 1, j), (i + 1, j + 1)].map(|(i, j)| table[layout.at(i, j)]);
-                        visit(((a - b) - (c - d)) * (m * n) as f64);
-                    }
+            self.t = lines(n, 1, width).along(0..m + 1);
+            self.edges_s = [lines(m, width, 1).along(0..1), lines(m, width, 1).along(n..width)];
+            self.edges_t = [lines(n, 1, width).along(0..1), lines(n, 1, width).along(m..m + 1)];
+            let mut mixed = Hull::EMPTY;
+            for i in 0..m {
+                for at in i * width..i * width + n {
+                    mixed.add((g[at] - g[at + 1]) - (g[at + width] - g[at + width + 1]));
                 }
-            });
+            }
+            self.st = mixed.times((m * n) as f64);
         }
         self
     }
@@ -259,42 +252,54 @@ impl Ranges {
     }
 }
 
-/// Around all values that `each` visits of each of four tables.
-fn around(tables: [&[f64]; 4], each: impl Fn(&[f64], &mut dyn FnMut(f64))) -> Affine {
-    let (mut low, mut high) = ([f64::INFINITY; 4], [f64::NEG_INFINITY; 4]);
-    for (k, table) in tables.into_iter().enumerate() {
-        let (low, high) = (&mut low[k], &mut high[k]);
-        each(table, &mut |value| {
-            (*low, *high) = (if value < *low { value } else { *low }, if value > *high { value } else { *high });
-        });
-    }
-    Affine::between(low, high)
+/// Parallel lines of coefficients: index `k` of line `l` lies at `k step + l across`.
+struct Lines<'a> {
+    g: &'a [DVec4],
+    degree: usize,
+    step: usize,
+    across: usize,
 }
 
-/// One direction of degree `degree`, over a range of indices across it; `at` tells where a coefficient lies.
-fn along(
-    tables: [&[f64]; 4],
-    degree: usize,
-    across: (usize, usize),
-    at: impl Fn(usize, usize) -> usize + Copy,
-) -> Along {
-    let secants = |from: usize, indices: std::ops::Range<usize>| {
-        around(tables, |table, visit| {
-            for k in indices.clone() {
-                let share = degree as f64 / k.abs_diff(from) as f64;
-                (across.0..=across.1).for_each(|l| visit((table[at(k, l)] - table[at(from, l)]) * share));
-            }
-        })
-    };
-    let bend = around(tables, |table, visit| {
-        for k in 0..=degree - 2 {
-            for l in across.0..=across.1 {
-                let second = table[at(k, l)] - 2.0 * table[at(k + 1, l)] + table[at(k + 2, l)];
-                visit(second * (degree * (degree - 1)) as f64);
+impl Lines<'_> {
+    /// Secants and second derivatives of some of the lines.
+    fn along(&self, lines: std::ops::Range<usize>) -> Along {
+        let degree = self.degree;
+        let (mut rise, mut fall, mut bend) = (Hull::EMPTY, Hull::EMPTY, Hull::EMPTY);
+        for l in lines {
+            let at = |k: usize| self.g[k * self.step + l * self.across];
+            for k in 0..degree {
+                fall.add((at(k) - at(degree)) / (degree - k) as f64);
+                rise.add((at(k + 1) - at(0)) / (k + 1) as f64);
+                if k + 2 <= degree {
+                    bend.add(at(k) - 2.0 * at(k + 1) + at(k + 2));
+                }
             }
         }
-    });
-    Along { rise: secants(0, 1..degree + 1), fall: secants(degree, 0..degree), bend }
+        let first = degree as f64;
+        Along { rise: rise.times(first), fall: fall.times(first), bend: bend.times(first * (first - 1.0)) }
+    }
+}
+
+/// The box around points of four dimensions.
+struct Hull {
+    low: DVec4,
+    high: DVec4,
+}
+
+impl Hull {
+    const EMPTY: Self = Self { low: DVec4::INFINITY, high: DVec4::NEG_INFINITY };
+
+    fn add(&mut self, x: DVec4) {
+        let smaller = |a: f64, b: f64| if b < a { b } else { a };
+        let larger = |a: f64, b: f64| if b > a { b } else { a };
+        for k in 0..4 {
+            (self.low[k], self.high[k]) = (smaller(self.low[k], x[k]), larger(self.high[k], x[k]));
+        }
+    }
+
+    fn times(&self, factor: f64) -> Affine {
+        Affine::between((self.low * factor).to_array(), (self.high * factor).to_array())
+    }
 }
 
 /// The interval of the scalar product of vectors in two boxes.
