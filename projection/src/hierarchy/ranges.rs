@@ -14,16 +14,25 @@
 //! ```
 //!
 //! with the box's middle `(a, b)` and half its extents. The vectors are taken along the axes of the leaf's oriented box, `y` being the query
-//! there: beside the leaf `y` points mostly along the normal, and what varies along the surface costs nothing. Of a polynomial leaf the boxes are
-//! those around the Bernstein coefficients of the form's tables; of a rational one they come from the boxes around its derivatives
-//! ([`quotient`](super::quotient)).
+//! there: beside the leaf `y` points mostly along the normal, and what varies along the surface costs nothing.
+//!
+//! Of a polynomial leaf the boxes are those around differences of the form's coefficients `g`. In place of slopes, secants are taken, which vary less:
+//!
+//! ```text
+//! (D(s) - D(0)) / s       = Σ n (g_k - g_0) / k · B_{k-1}^{n-1}(s)
+//! (D(s) - D(1)) / (1 - s) = Σ n (g_k - g_n) / (n - k) · B_k^{n-1}(s)
+//! ```
+//!
+//! Where the first are not negative, the leaf is nearest where it begins, where the second are not, at its end. Each edge has ranges of its own, around
+//! the coefficients of its line. Of a rational leaf the boxes come from those around its derivatives ([`quotient`](super::quotient)), by interval products; its
+//! slopes stand for secants, and its own ranges for those of its edges.
 //!
 //! # Rounding
 //!
 //! Of a polynomial leaf a coefficient of the form errs by at most [`rounding_bound`], a first difference by twice and a second by four times that, made of
 //! the same coefficients; the axes turn vectors and query with errors of less than `32 u` of their product, `|c1|` of a difference being at most
 //! `4 r`. Twice the largest of these bounds pays for it all, and times the squared ratio of the weights for the products of a rational leaf's boxes,
-//! whose own rounding is in the boxes.
+//! whose own rounding is in the boxes. Storing in single precision needs no share: the extent is taken from the rounded middle, and rounded outwards.
 
 use glam::{DMat3, DVec3, DVec4};
 use perpend_kernel::Aabb;
