@@ -18,7 +18,7 @@ pub(super) fn with_points(curve: &NurbsCurve, points: Vec<DVec3>) -> Option<Nurb
 
 /// Points of a curve, its ends included.
 pub(super) fn samples(curve: &NurbsCurve) -> Vec<DVec3> {
-    parameters(curve.domain(), 16).map(|u| curve.point(u)).collect()
+    parameters(curve.domain(), 32).map(|u| curve.point(u)).collect()
 }
 
 /// `count + 1` parameters, evenly over a domain, its ends included.

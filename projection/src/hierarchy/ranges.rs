@@ -107,6 +107,13 @@ struct Along {
 }
 
 impl Along {
+    /// Of a rational piece whose points and derivatives lie in these boxes: slopes are secants, too.
+    fn within(point: &Aabb, first: &Aabb, second: &Aabb) -> Self {
+        let slope = Affine::of(twice(&[dot(point, first)]), first);
+        let bend = Affine::of(twice(&[square(first), dot(point, second)]), second);
+        Self { rise: slope, fall: slope.negative(), bend }
+    }
+
     /// The end that is nearest, as far as the secants tell; else both.
     #[inline(always)]
     fn lowest(&self, view: &View, factor: f64) -> (f64, f64) {
@@ -164,7 +171,7 @@ impl Ranges {
             weights: (weights.1 / weights.0).powi(2),
         };
         if leaf.rational {
-            empty.rational(&Boxes::around(leaf, axes, radius, weights))
+            empty.rational(leaf, axes, radius, weights)
         } else {
             empty.polynomial(leaf, axes)
         }
@@ -244,19 +251,23 @@ impl Ranges {
         self
     }
 
-    /// From the boxes around the derivatives of a rational leaf.
-    fn rational(mut self, Boxes { p, ps, pt, pss, pst, ptt }: &Boxes) -> Self {
-        let twice_sum =
-            |terms: &[(f64, f64)]| terms.iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + 2.0 * c, b + 2.0 * d));
-        let along = |first: &Aabb, second: &Aabb| {
-            let slope = Affine::of(twice_sum(&[dot(p, first)]), first);
-            let bend = Affine::of(twice_sum(&[square(first), dot(p, second)]), second);
-            Along { rise: slope, fall: slope.negative(), bend }
-        };
-        self.s = along(ps, pss);
-        self.t = along(pt, ptt);
-        (self.edges_s, self.edges_t) = ([self.s; 2], [self.t; 2]);
-        self.st = Affine::of(twice_sum(&[dot(ps, pt), dot(p, pst)]), pst);
+    /// From the boxes around the derivatives of a rational leaf and of its edges.
+    fn rational(mut self, leaf: Shape<'_>, axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
+        let Boxes { p, ps, pt, pss, pst, ptt } = Boxes::around(leaf, axes, radius, weights);
+        self.s = Along::within(&p, &ps, &pss);
+        if leaf.degree.1 > 0 {
+            self.t = Along::within(&p, &pt, &ptt);
+            self.st = Affine::of(twice(&[dot(&ps, &pt), dot(&p, &pst)]), &pst);
+            let edge = |from: usize, step: usize, degree: usize| {
+                let net: Vec<DVec4> = leaf.net[from..].iter().step_by(step).take(degree + 1).copied().collect();
+                let edge = Shape { degree: (degree, 0), rational: true, net: &net };
+                let Boxes { p, ps, pss, .. } = Boxes::around(edge, axes, radius, weights);
+                Along::within(&p, &ps, &pss)
+            };
+            let (p, q) = leaf.degree;
+            self.edges_s = [edge(0, q + 1, p), edge(q, q + 1, p)];
+            self.edges_t = [edge(0, 1, q), edge(p * (q + 1), 1, q)];
+        }
         self
     }
 }
@@ -309,6 +320,11 @@ impl Hull {
     fn times(&self, factor: f64) -> Affine {
         Affine::between((self.low * factor).to_array(), (self.high * factor).to_array())
     }
+}
+
+/// Twice the sum of intervals.
+fn twice(terms: &[(f64, f64)]) -> (f64, f64) {
+    terms.iter().fold((0.0, 0.0), |(a, b), (c, d)| (a + 2.0 * c, b + 2.0 * d))
 }
 
 /// The interval of the scalar product of vectors in two boxes.
