@@ -23,9 +23,9 @@
 //! (D(s) - D(1)) / (1 - s) = Σ n (g_k - g_n) / (n - k) · B_k^{n-1}(s)
 //! ```
 //!
-//! Where the first are not negative, the leaf is nearest where it begins, where the second are not, at its end. Each edge has ranges of its own, around
-//! the coefficients of its line. Of a rational leaf the boxes come from those around its derivatives ([`quotient`](super::quotient)), by interval products; its
-//! slopes stand for secants, and its own ranges for those of its edges.
+//! Where the first are not negative, the leaf is nearest where it begins, where the second are not, at its end. Of a rational leaf the boxes come from
+//! those around its derivatives ([`quotient`](super::quotient)), by interval products, and slopes stand for secants. Each edge has ranges of its own,
+//! from the coefficients of its line alone.
 //!
 //! # Rounding
 //!
