@@ -18,14 +18,7 @@ use super::newton::{Domain, Found};
 
 /// The least that the form of `tau` can be on a box of the leaf's parameters that holds the point `found`, where `curvature` is a lower bound of the
 /// Hessian on that box. In a direction in which the box has no extent, curvature and slope do not matter.
-pub(super) fn least_from(
-    leaf: &Leaf,
-    x: DVec3,
-    found: &Found,
-    domain: Domain,
-    curvature: Curvature,
-    tau: f64,
-) -> f64 {
+pub(super) fn least_from(leaf: &Leaf, x: DVec3, found: &Found, domain: Domain, curvature: Curvature, tau: f64) -> f64 {
     let Found { distance: d, s, t, jet, .. } = found;
     let (w, q) = (jet.p.w, jet.point() - x);
     let mut bound = (d - tau) * (d + tau) * w * w - value_error(leaf, *d);
@@ -129,8 +122,8 @@ fn gradient_error(leaf: &Leaf, d: f64, tau: f64, direction: DVec3, weight: f64, 
 mod tests {
     use super::super::double_double::{DoubleDouble, Random};
     use super::super::piece::Piece;
-    use fearless_simd::Level;
     use super::*;
+    use fearless_simd::Level;
     use perpend_kernel::binomial;
 
     /// Bernstein polynomials and their first derivatives in double-double.

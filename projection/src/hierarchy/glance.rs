@@ -45,11 +45,19 @@ fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut Stat
     let search = Search { domain, start: domain.clamp(s, t), evaluations: EVALUATIONS, decrease };
     let (upper, goal) = (state.best.distance, state.goal);
     let mut closed = false;
-    let found = newton::search_within(simd, leaf, x, search, &mut state.done, #[inline(always)] |found| {
-        let tau = goal.tau(found.distance.min(upper));
-        closed = curvature.is_some_and(|curvature| nearest_from(leaf, x, found, domain, curvature) >= tau * tau);
-        closed
-    });
+    let found = newton::search_within(
+        simd,
+        leaf,
+        x,
+        search,
+        &mut state.done,
+        #[inline(always)]
+        |found| {
+            let tau = goal.tau(found.distance.min(upper));
+            closed = curvature.is_some_and(|curvature| nearest_from(leaf, x, found, domain, curvature) >= tau * tau);
+            closed
+        },
+    );
     part.offer(&found, state);
     closed
 }

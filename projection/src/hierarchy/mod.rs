@@ -147,10 +147,8 @@ impl Hierarchy {
         }
         let level = Level::new();
         let mut points = Vec::new();
-        let leaves: Vec<Leaf> = split_bent(pieces, &mut points)
-            .into_iter()
-            .map(|piece| Leaf::new(piece, level, &mut points))
-            .collect();
+        let leaves: Vec<Leaf> =
+            split_bent(pieces, &mut points).into_iter().map(|piece| Leaf::new(piece, level, &mut points)).collect();
         let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
         let whole = |range: fn(&Leaf) -> (f64, f64)| {
             leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))

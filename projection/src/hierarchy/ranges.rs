@@ -170,11 +170,7 @@ impl Ranges {
             radius,
             weights: (weights.1 / weights.0).powi(2),
         };
-        if leaf.rational {
-            empty.rational(leaf, axes, radius, weights)
-        } else {
-            empty.polynomial(leaf, axes)
-        }
+        if leaf.rational { empty.rational(leaf, axes, radius, weights) } else { empty.polynomial(leaf, axes) }
     }
 
     /// The query at `x` from the leaf's origin and at `y` along its axes.

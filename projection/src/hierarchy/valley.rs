@@ -75,7 +75,8 @@ mod tests {
                 })
                 .collect();
             let value = |s: f64, t: f64| {
-                let basis = |d: usize, k: usize, x: f64| binomial(d, k) * x.powi(k as i32) * (1.0 - x).powi((d - k) as i32);
+                let basis =
+                    |d: usize, k: usize, x: f64| binomial(d, k) * x.powi(k as i32) * (1.0 - x).powi((d - k) as i32);
                 let terms = plain.iter().enumerate();
                 terms.map(|(e, g)| g * basis(m, e / (n + 1), s) * basis(n, e % (n + 1), t)).sum::<f64>()
             };
