@@ -45,11 +45,23 @@ fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut Stat
     let search = Search { domain, start: domain.clamp(s, t), evaluations: EVALUATIONS, decrease };
     let (upper, goal) = (state.best.distance, state.goal);
     let mut closed = false;
-    let found = newton::search_within(simd, leaf, x, search, &mut state.done, #[inline(always)] |found| {
-        let tau = goal.tau(found.distance.min(upper));
-        closed = curvature.is_some_and(|curvature| nearest_from(leaf, x, found, domain, curvature) >= tau * tau);
-        closed
-    });
+    let found = newton::search_within(
+        simd,
+        leaf,
+        x,
+        search,
+        &mut state.done,
+        #[inline(always)]
+        |found| {
+            let Some(curvature) = curvature else { return false };
+            let best = found.distance.min(upper);
+            let (tau, reach) = (goal.tau(best), goal.reach(best));
+            let least = nearest_from(leaf, x, found, domain, curvature);
+            closed |= least >= tau * tau;
+            // what is proven no nearer may still hold a foot that is as near
+            closed && (found.distance <= reach || least >= reach * reach)
+        },
+    );
     part.offer(&found, state);
     closed
 }

@@ -53,10 +53,10 @@ impl Leaf {
         let (p, q) = degree;
         let bounds = Aabb::around(net.iter().map(|h| cartesian(*h)));
         let origin = bounds.centre();
-        let scale =
-            if rational { power_of_two_below(net.iter().fold(0.0_f64, |a, h| a.max(h.w))).recip() } else { 1.0 };
+        let scale = power_of_two_below(net.iter().fold(0.0_f64, |a, h| a.max(h.w))).recip();
         for h in &mut net {
-            let weight = h.w * scale;
+            // what cutting has left of a polynomial's weights is 1 but for rounding; its form takes them for 1
+            let weight = if rational { h.w * scale } else { 1.0 };
             *h = ((cartesian(*h) - origin) * weight).extend(weight);
         }
         let local: Vec<DVec3> = net.iter().map(|h| cartesian(*h)).collect();
@@ -95,7 +95,8 @@ impl Leaf {
     pub(super) fn opened(&self) -> &Opened {
         self.opened.get_or_init(|| {
             let tables = form::tables(self.shape());
-            let ranges = Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, (self.lightest, self.heaviest));
+            let ranges =
+                Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, (self.lightest, self.heaviest));
             Opened { tables, ranges }
         })
     }

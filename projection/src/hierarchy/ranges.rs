@@ -243,3 +243,131 @@ fn square(a: &Aabb) -> (f64, f64) {
         (low + least, high + x.max(y))
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::double_double::{DoubleDouble, Random, squared_distance};
+    use super::super::leaf::Leaf;
+    use super::super::piece::Piece;
+    use super::*;
+    use fearless_simd::Level;
+    use glam::DVec4;
+
+    const DEGREES: [(usize, usize); 12] =
+        [(1, 0), (2, 0), (3, 0), (9, 0), (25, 0), (1, 1), (2, 1), (1, 5), (2, 2), (3, 3), (3, 2), (5, 5)];
+
+    /// A piece near a parallelogram, or as far from it as `bend` says, whose weights are up to `ratio` apart.
+    fn leaf(degree: (usize, usize), bend: f64, ratio: Option<f64>, random: &mut Random) -> Leaf {
+        let (p, q) = degree;
+        let (along, across) = (random.point(), random.point());
+        let share = |k: usize, n: usize| if n > 0 { k as f64 / n as f64 } else { 0.0 };
+        let net: Vec<DVec4> = (0..(p + 1) * (q + 1))
+            .map(|e| {
+                let flat = share(e / (q + 1), p) * along + share(e % (q + 1), q) * across;
+                let weight = ratio.map_or(1.0, |ratio| ratio.powf(random.between(0.0, 1.0)));
+                ((flat + bend * random.point()) * weight).extend(weight)
+            })
+            .collect();
+        Leaf::new(Piece { degree, net, u: (0.0, 1.0), v: (0.0, 1.0) }, ratio.is_some(), Level::new())
+    }
+
+    /// A query about a leaf's origin: from on the leaf to a thousand radii away.
+    fn query(leaf: &Leaf, random: &mut Random) -> DVec3 {
+        let on = leaf.jet(random.between(0.0, 1.0), random.between(0.0, 1.0)).point();
+        on + leaf.radius * 10.0_f64.powf(random.between(-9.0, 3.0)) * random.point()
+    }
+
+    /// Parameters with the corners and edges among them.
+    fn parameters(leaf: &Leaf, random: &mut Random) -> (f64, f64) {
+        let mut one = || random.between(-0.3, 1.3).clamp(0.0, 1.0);
+        let (s, t) = (one(), one());
+        (s, if leaf.degree.1 == 0 { 0.0 } else { t })
+    }
+
+    fn ratio(round: usize, random: &mut Random) -> Option<f64> {
+        match round % 4 {
+            0 => None,
+            1 => Some(1.0 + random.between(0.0, 1e-3)),
+            2 => Some(16.0),
+            // what a leaf has whose splitting ran out of room
+            _ => Some(10.0_f64.powf(random.between(1.0, 4.0))),
+        }
+    }
+
+    /// Each derivative of the squared distance, to 30 digits, lies in its range; and the share that pays for rounding is not idle: of pieces that are
+    /// nothing but a line or a parallelogram a hundredth of it is exceeded.
+    #[test]
+    fn derivatives_lie_in_their_ranges_and_rounding_is_paid_for() {
+        let mut random = Random(43);
+        let (mut worst, mut worst_flat) = (f64::NEG_INFINITY, f64::NEG_INFINITY);
+        for round in 0..1200 {
+            let degree = DEGREES[round / 4 % DEGREES.len()];
+            let ratio = ratio(round, &mut random);
+            let flat = round % 3 == 0;
+            let bend = if flat { 0.0 } else { 10.0_f64.powf(random.between(-4.0, 0.0)) };
+            let leaf = leaf(degree, bend, ratio, &mut random);
+            let ranges = &leaf.opened().ranges;
+            for _ in 0..6 {
+                let x = query(&leaf, &mut random);
+                let view = ranges.view(x, leaf.along_axes(x));
+                for _ in 0..4 {
+                    let exact = squared_distance(&leaf.net, degree, x, parameters(&leaf, &mut random));
+                    let held = [&ranges.s, &ranges.t, &ranges.ss, &ranges.st, &ranges.tt];
+                    for (k, (range, factor)) in held.into_iter().zip(ranges.factors).enumerate() {
+                        if degree.1 == 0 && [1, 3, 4].contains(&k) {
+                            continue;
+                        }
+                        let (middle, extent) = range.at(&view);
+                        let apart = (exact[k + 1] - DoubleDouble::from(middle)).to_f64().abs();
+                        let beyond = (apart - extent) / (factor * view.rounding);
+                        worst = worst.max(beyond);
+                        if flat && ratio.is_none() {
+                            worst_flat = worst_flat.max(beyond);
+                        }
+                    }
+                }
+            }
+        }
+        assert!(worst < 1.0, "a derivative lies outside its range by {worst} of what rounding may take");
+        assert!(worst_flat > 1e-2, "the bound of rounding is idle: {worst_flat}");
+    }
+
+    /// No dense sample of a leaf contradicts the edge or corner that is claimed to be nearest, nor the claimed curvature; and both are claimed often.
+    #[test]
+    fn no_sample_contradicts_what_the_ranges_claim() {
+        let mut random = Random(47);
+        let (mut edges, mut curved, mut count) = (0, 0, 0);
+        for round in 0..600 {
+            let degree = DEGREES[round / 4 % DEGREES.len()];
+            let ratio = ratio(round, &mut random);
+            let bend = 10.0_f64.powf(random.between(-4.0, 0.0));
+            let leaf = leaf(degree, bend, ratio, &mut random);
+            let ranges = &leaf.opened().ranges;
+            for _ in 0..4 {
+                let x = query(&leaf, &mut random);
+                let view = ranges.view(x, leaf.along_axes(x));
+                let domain = ranges.lowest(&view);
+                let curvature = ranges.curvature(&view, &domain);
+                let (along_s, along_t) = (domain.s.0 < domain.s.1, domain.t.0 < domain.t.1);
+                count += 1;
+                edges += usize::from(!along_s || (degree.1 > 0 && !along_t));
+                curved += usize::from(curvature.is_some() && (along_s || along_t));
+                for _ in 0..12 {
+                    let at = parameters(&leaf, &mut random);
+                    let anywhere = squared_distance(&leaf.net, degree, x, at);
+                    let inside = domain.clamp(at.0, at.1);
+                    let [there, _, _, ss, st, tt] = squared_distance(&leaf.net, degree, x, inside);
+                    let farther = (anywhere[0] - there).to_f64();
+                    assert!(farther >= 0.0, "{degree:?} at {at:?}: nearer than {inside:?} by {farther}");
+                    let Some(Curvature { s, t }) = curvature else { continue };
+                    let left = |second: DoubleDouble, claimed: f64| (second - DoubleDouble::from(claimed)).to_f64();
+                    let (left_s, left_t, st) = (left(ss, s), left(tt, t), st.to_f64());
+                    assert!(!along_s || (s > 0.0 && left_s >= 0.0), "{degree:?} at {inside:?}: {left_s}");
+                    assert!(!along_t || (t > 0.0 && left_t >= 0.0), "{degree:?} at {inside:?}: {left_t}");
+                    assert!(!(along_s && along_t) || left_s * left_t >= st * st, "{left_s} {left_t} {st}");
+                }
+            }
+        }
+        assert!(edges * 20 > count && curved * 10 > count, "nothing is claimed: {edges} and {curved} of {count}");
+    }
+}
