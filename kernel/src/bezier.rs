@@ -10,28 +10,108 @@ use crate::knots::{KnotVector, Span};
 /// Entry `(m, k)` is the `k`-th coefficient of the blossom at `p - m` times the span's start and `m` times its end. All
 /// entries are non-negative, and quotients to both sides are formed separately (never `1 - t`), so each entry has a
 /// relative error of at most about `5 p u`, `u = 2⁻⁵³`: numerator and weight of a rational piece are moved alike.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Extraction {
+    width: usize,
+    entries: Vec<f64>,
+}
+
+impl Extraction {
+    /// The matrix that leaves one point as it is.
+    #[must_use]
+    pub fn of_a_point() -> Self {
+        Self { width: 1, entries: vec![1.0] }
+    }
+
+    /// The rows in ascending order.
+    pub fn rows(&self) -> impl ExactSizeIterator<Item = &[f64]> {
+        self.entries.chunks_exact(self.width)
+    }
+}
+
+/// The extraction matrix of a span.
 #[must_use]
-pub fn extraction(knots: &KnotVector, span: Span) -> Vec<Vec<f64>> {
-    let (p, t) = (knots.degree(), knots.as_slice());
-    (0..=p)
-        .map(|m| {
-            // row j of `d` holds the coefficients of de Boor's point j
-            let mut d: Vec<Vec<f64>> =
-                (0..=p).map(|j| (0..=p).map(|k| f64::from(u8::from(j == k))).collect()).collect();
-            for r in 1..=p {
-                let argument = if r <= p - m { span.start } else { span.end };
-                for j in (r..=p).rev() {
-                    let (a, b) = (t[span.index - p + j], t[span.index + 1 + j - r]);
-                    let (from_a, to_b) = ((argument - a) / (b - a), (b - argument) / (b - a));
-                    let (before, rest) = d.split_at_mut(j);
-                    for (share, previous) in rest[0].iter_mut().zip(&before[j - 1]) {
-                        *share = to_b * previous + from_a * *share;
-                    }
-                }
+pub fn extraction(knots: &KnotVector, span: Span) -> Extraction {
+    let width = knots.degree() + 1;
+    let mut blossoms = Blossoms::new(knots);
+    blossoms.enter(span);
+    let mut entries = vec![0.0; width * width];
+    let (mut unit, mut column) = (vec![0.0; width], vec![0.0; width]);
+    for k in 0..width {
+        unit.fill(0.0);
+        unit[k] = 1.0;
+        blossoms.bezier_points(&mut unit, &mut column);
+        for (row, entry) in entries.chunks_exact_mut(width).zip(&column) {
+            row[k] = *entry;
+        }
+    }
+    Extraction { width, entries }
+}
+
+/// A level of de Boor's algorithm: every point but the first is combined with the one before it.
+fn level<T>(points: &mut [T], quotients: &[(f64, f64)])
+where
+    T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+{
+    for (j, (before, after)) in quotients.iter().enumerate().rev() {
+        points[j + 1] = points[j] * *before + points[j + 1] * *after;
+    }
+}
+
+/// De Boor's algorithm at both ends of a span.
+///
+/// Bézier point `m` is the blossom at `p - m` times the start and `m` times the end. Its first levels, at the start, are those of the point
+/// before it too, and the quotients of a level are the same for all points.
+struct Blossoms<'a> {
+    knots: &'a KnotVector,
+    /// The quotients `(end of the wider span - x, x - its start) / its length` of every level and point, `x` being the start of the span.
+    at_start: Vec<(f64, f64)>,
+    /// The same, `x` being the end of the span.
+    at_end: Vec<(f64, f64)>,
+}
+
+impl<'a> Blossoms<'a> {
+    fn new(knots: &'a KnotVector) -> Self {
+        let pairs = knots.degree() * (knots.degree() + 1) / 2;
+        Self { knots, at_start: Vec::with_capacity(pairs), at_end: Vec::with_capacity(pairs) }
+    }
+
+    fn enter(&mut self, span: Span) {
+        let (p, t) = (self.knots.degree(), self.knots.as_slice());
+        self.at_start.clear();
+        self.at_end.clear();
+        for r in 1..=p {
+            for j in r..=p {
+                let (a, b) = (t[span.index - p + j], t[span.index + 1 + j - r]);
+                let length = b - a;
+                self.at_start.push(((b - span.start) / length, (span.start - a) / length));
+                self.at_end.push(((b - span.end) / length, (span.end - a) / length));
             }
-            d.swap_remove(p)
-        })
-        .collect()
+        }
+    }
+
+    /// The Bézier points of the span from its `p + 1` control points, which are used up.
+    fn bezier_points<T>(&self, points: &mut [T], out: &mut [T])
+    where
+        T: Copy + std::ops::Add<Output = T> + std::ops::Mul<f64, Output = T>,
+    {
+        let p = self.knots.degree();
+        let mut first = 0;
+        for r in 0..=p {
+            // what is not filled yet is room for the levels at the end
+            let work = &mut out[..=p - r];
+            work.copy_from_slice(&points[r..]);
+            let mut from = first;
+            for active in (0..p - r).rev() {
+                level(&mut work[p - r - active - 1..], &self.at_end[from..=from + active]);
+                from += active + 1;
+            }
+            if r < p {
+                level(&mut points[r..], &self.at_start[first..first + p - r]);
+                first += p - r;
+            }
+        }
+    }
 }
 
 /// A polynomial piece of a curve, homogeneous: `degree + 1` points over `[span.start, span.end]`.
@@ -58,11 +138,16 @@ pub struct BezierSurface {
 #[must_use]
 pub fn curve_pieces(knots: &KnotVector, net: &[DVec4]) -> Vec<BezierCurve> {
     let p = knots.degree();
+    let mut blossoms = Blossoms::new(knots);
+    let mut held = vec![DVec4::ZERO; p + 1];
     knots
         .spans()
         .map(|span| {
-            let points = &net[span.index - p..=span.index];
-            BezierCurve { points: extraction(knots, span).iter().map(|row| combine(row, points)).collect(), span }
+            blossoms.enter(span);
+            held.copy_from_slice(&net[span.index - p..=span.index]);
+            let mut points = vec![DVec4::ZERO; p + 1];
+            blossoms.bezier_points(&mut held, &mut points);
+            BezierCurve { points, span }
         })
         .collect()
 }
@@ -71,25 +156,22 @@ pub fn curve_pieces(knots: &KnotVector, net: &[DVec4]) -> Vec<BezierCurve> {
 #[must_use]
 pub fn surface_pieces(u: &KnotVector, v: &KnotVector, net: &[DVec4]) -> Vec<BezierSurface> {
     let (p, q, columns) = (u.degree(), v.degree(), v.point_count());
-    let along: Vec<(Span, Vec<Vec<f64>>)> = v.spans().map(|span| (span, extraction(v, span))).collect();
-    let mut pieces = Vec::new();
-    let mut column = vec![DVec4::ZERO; p + 1];
+    let along: Vec<(Span, Extraction)> = v.spans().map(|span| (span, extraction(v, span))).collect();
+    let mut pieces = Vec::with_capacity(along.len() * u.spans().count());
     let mut strip = vec![DVec4::ZERO; (p + 1) * columns];
     for across in u.spans() {
-        let matrix = extraction(u, across);
-        for j in 0..columns {
-            for (i, point) in column.iter_mut().enumerate() {
-                *point = net[(across.index - p + i) * columns + j];
-            }
-            for (i, row) in matrix.iter().enumerate() {
-                strip[i * columns + j] = combine(row, &column);
+        let first = (across.index - p) * columns;
+        for (row, coefficients) in strip.chunks_exact_mut(columns).zip(extraction(u, across).rows()) {
+            row.fill(DVec4::ZERO);
+            for (c, points) in coefficients.iter().zip(net[first..].chunks_exact(columns)) {
+                row.iter_mut().zip(points).for_each(|(sum, point)| *sum += *c * *point);
             }
         }
         for (span, matrix) in &along {
             let mut points = Vec::with_capacity((p + 1) * (q + 1));
-            for i in 0..=p {
-                let row = &strip[i * columns + span.index - q..=i * columns + span.index];
-                points.extend(matrix.iter().map(|coefficients| combine(coefficients, row)));
+            for row in strip.chunks_exact(columns) {
+                let row = &row[span.index - q..=span.index];
+                points.extend(matrix.rows().map(|coefficients| combine(coefficients, row)));
             }
             pieces.push(BezierSurface { degree: (p, q), points, spans: (across, *span) });
         }

@@ -19,13 +19,15 @@ impl Aabb {
     /// The smallest box around `points`.
     #[must_use]
     pub fn around(points: impl IntoIterator<Item = DVec3>) -> Self {
-        points.into_iter().fold(Self::EMPTY, |bounds, p| Self { min: bounds.min.min(p), max: bounds.max.max(p) })
+        points
+            .into_iter()
+            .fold(Self::EMPTY, |bounds, p| Self { min: least(p, bounds.min), max: greatest(p, bounds.max) })
     }
 
     /// The smallest box around both.
     #[must_use]
     pub fn join(self, other: Self) -> Self {
-        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+        Self { min: least(self.min, other.min), max: greatest(self.max, other.max) }
     }
 
     /// The middle.
@@ -60,4 +62,16 @@ impl Aabb {
     pub fn contains(&self, p: DVec3) -> bool {
         p.cmpge(self.min).all() && p.cmple(self.max).all()
     }
+}
+
+/// The lesser coordinates of two points that are numbers: one comparison each, where `f64::min` looks for others.
+fn least(a: DVec3, b: DVec3) -> DVec3 {
+    let least = |a: f64, b: f64| if a < b { a } else { b };
+    DVec3::new(least(a.x, b.x), least(a.y, b.y), least(a.z, b.z))
+}
+
+/// The greater coordinates.
+fn greatest(a: DVec3, b: DVec3) -> DVec3 {
+    let greatest = |a: f64, b: f64| if a > b { a } else { b };
+    DVec3::new(greatest(a.x, b.x), greatest(a.y, b.y), greatest(a.z, b.z))
 }

@@ -39,7 +39,7 @@ pub use item::{Basis, Item};
 pub use making::{Making, MakingError};
 pub use operation::{Operation, Takes};
 pub use prepare::{InvalidTolerance, PreparedDefinition, clean, cuts, cuts_at, displacement, parted, purge};
-pub use recognise::{Refuted, believed_tolerance, default_tolerance, prove, recognise};
+pub use recognise::{Refuted, believed_tolerance, class_and_gap, default_tolerance, prove, recognise};
 pub use record::Record;
 pub use relationship::{Checked, Relation, Relationship, Value};
 pub use representation::{Break, Cleaning, Irregularity, ParameterPoint, Representation, SpanSpeed, Speed};

@@ -95,10 +95,11 @@ impl BoxTree {
 
     /// The same for a processor that can do what `level` says.
     pub(crate) fn with_level(boxes: &[Aabb], level: Level) -> Self {
-        let mut order: Vec<u32> = (0..boxes.len()).map(|i| i as u32).collect();
+        let mut items: Vec<Item> =
+            boxes.iter().enumerate().map(|(at, bounds)| Item { middle: bounds.centre(), at: at as u32 }).collect();
         let mut nodes = Vec::with_capacity(boxes.len() / 2 + 1);
         if !boxes.is_empty() {
-            build(&mut order, boxes, &mut nodes);
+            build(&mut items, boxes, &mut nodes);
         }
         Self { nodes, level }
     }
@@ -161,17 +162,24 @@ impl BoxTree {
     }
 }
 
+/// An item on its way into the tree: the middle of its box, and its index.
+#[derive(Debug, Clone, Copy)]
+struct Item {
+    middle: DVec3,
+    at: u32,
+}
+
 /// Splits at the medians of the middles along the longest extents: balanced, whatever the boxes. Returns the node's index.
-fn build(order: &mut [u32], boxes: &[Aabb], nodes: &mut Vec<Node>) -> u32 {
+fn build(items: &mut [Item], boxes: &[Aabb], nodes: &mut Vec<Node>) -> u32 {
     let me = nodes.len();
     nodes.push(Node::EMPTY);
     let mut node = Node::EMPTY;
-    let (low, high) = halves(order, boxes);
-    let quarters = [halves(low, boxes), halves(high, boxes)].map(<[_; 2]>::from).into_iter().flatten();
+    let (low, high) = halves(items);
+    let quarters = [halves(low), halves(high)].map(<[_; 2]>::from).into_iter().flatten();
     for (lane, part) in quarters.filter(|part| !part.is_empty()).enumerate() {
-        let bounds = part.iter().fold(Aabb::EMPTY, |all, i| all.join(boxes[*i as usize]));
+        let bounds = part.iter().fold(Aabb::EMPTY, |all, i| all.join(boxes[i.at as usize]));
         let child = match *part {
-            [item] => Child::Item(item),
+            [item] => Child::Item(item.at),
             _ => Child::Inner(build(part, boxes, nodes)),
         };
         node.set(lane, bounds, child);
@@ -181,17 +189,16 @@ fn build(order: &mut [u32], boxes: &[Aabb], nodes: &mut Vec<Node>) -> u32 {
 }
 
 /// Both halves of some items, by their middles along the longest extent of these.
-fn halves<'a>(order: &'a mut [u32], boxes: &[Aabb]) -> (&'a mut [u32], &'a mut [u32]) {
-    let middle = |i: u32| boxes[i as usize].centre();
-    let half = order.len() / 2;
+fn halves(items: &mut [Item]) -> (&mut [Item], &mut [Item]) {
+    let half = items.len() / 2;
     if half > 0 {
-        let middles = Aabb::around(order.iter().map(|i| middle(*i)));
+        let middles = Aabb::around(items.iter().map(|item| item.middle));
         let extent = middles.max - middles.min;
         let axis =
             extent.to_array().iter().enumerate().fold(0, |best, (k, e)| if *e > extent[best] { k } else { best });
-        order.select_nth_unstable_by(half, |a, b| middle(*a)[axis].total_cmp(&middle(*b)[axis]).then(a.cmp(b)));
+        items.select_nth_unstable_by(half, |a, b| a.middle[axis].total_cmp(&b.middle[axis]).then(a.at.cmp(&b.at)));
     }
-    order.split_at_mut(half)
+    items.split_at_mut(half)
 }
 
 #[cfg(test)]

@@ -3,7 +3,7 @@
 use std::sync::OnceLock;
 
 use glam::{DVec3, DVec4};
-use perpend_kernel::bezier::extraction;
+use perpend_kernel::bezier::{Extraction, extraction};
 use perpend_kernel::{Definition, Direction, KnotVector, Span, cartesian, homogeneous};
 
 use super::bernstein::{Form, Side};
@@ -104,15 +104,15 @@ impl Source {
     }
 
     /// The extraction matrices of the second parameter's spans: what all strips share.
-    pub(crate) fn columns(&self) -> Vec<(Span, Vec<Vec<f64>>)> {
+    pub(crate) fn columns(&self) -> Vec<(Span, Extraction)> {
         match &self.across {
-            None => vec![(Span { index: 0, start: 0.0, end: 0.0 }, vec![vec![1.0]])],
+            None => vec![(Span { index: 0, start: 0.0, end: 0.0 }, Extraction::of_a_point())],
             Some(knots) => knots.spans().map(|span| (span, extraction(knots, span))).collect(),
         }
     }
 
     /// The pieces over one span of the first parameter.
-    pub(crate) fn strip(&self, span: Span, columns: &[(Span, Vec<Vec<f64>>)]) -> Vec<Piece> {
+    pub(crate) fn strip(&self, span: Span, columns: &[(Span, Extraction)]) -> Vec<Piece> {
         if self.across.is_some() || self.net.len() * (self.knots.degree() + 1) > KEPT {
             return self.extract(span, columns);
         }
@@ -121,11 +121,11 @@ impl Source {
         all[at..at + 1].to_vec()
     }
 
-    fn extract(&self, span: Span, columns: &[(Span, Vec<Vec<f64>>)]) -> Vec<Piece> {
+    fn extract(&self, span: Span, columns: &[(Span, Extraction)]) -> Vec<Piece> {
         let ((p, q), count) = (self.degree(), self.across.as_ref().map_or(1, KnotVector::point_count));
         let matrix = extraction(&self.knots, span);
         let mut rows = vec![DVec4::ZERO; (p + 1) * count];
-        for (row, coefficients) in rows.chunks_mut(count).zip(&matrix) {
+        for (row, coefficients) in rows.chunks_mut(count).zip(matrix.rows()) {
             for (k, c) in coefficients.iter().enumerate().filter(|(_, c)| **c != 0.0) {
                 let from = (span.index - p + k) * count;
                 for (sum, point) in row.iter_mut().zip(&self.net[from..from + count]) {
@@ -133,12 +133,12 @@ impl Source {
                 }
             }
         }
-        let piece = |(over, matrix): &(Span, Vec<Vec<f64>>)| {
+        let piece = |(over, matrix): &(Span, Extraction)| {
             let mut coefficients = Vec::with_capacity((p + 1) * (q + 1));
             for row in rows.chunks(count) {
                 let row = &row[over.index - q..=over.index];
                 coefficients.extend(
-                    matrix.iter().map(|c| c.iter().zip(row).fold(DVec4::ZERO, |sum, (c, point)| sum + *c * *point)),
+                    matrix.rows().map(|c| c.iter().zip(row).fold(DVec4::ZERO, |sum, (c, point)| sum + *c * *point)),
                 );
             }
             Piece {

@@ -1,8 +1,8 @@
 //! How far a coordinate runs along a curve: enclosed by control points, closed in on by halving.
 
 use glam::{DVec3, DVec4};
-use perpend_kernel::bezier::extraction;
-use perpend_kernel::{NurbsCurve, Span};
+use perpend_kernel::NurbsCurve;
+use perpend_kernel::bezier::curve_pieces;
 
 use super::proof::rounding;
 
@@ -14,14 +14,7 @@ pub(super) fn pieces(curve: &NurbsCurve, map: impl Fn(DVec3) -> DVec3) -> Vec<Pi
     let weight = |i: usize| curve.weights().map_or(1.0, |w| w[i]);
     let mapped: Vec<DVec4> =
         curve.control_points().iter().enumerate().map(|(i, p)| (map(*p) * weight(i)).extend(weight(i))).collect();
-    let p = curve.degree();
-    let piece = |span: Span| {
-        let combine = |row: &Vec<f64>, points: &[DVec4]| {
-            row.iter().zip(points).fold(DVec4::ZERO, |sum, (c, point)| sum + *c * *point)
-        };
-        extraction(curve.knots(), span).iter().map(|row| combine(row, &mapped[span.index - p..=span.index])).collect()
-    };
-    curve.knots().spans().map(piece).collect()
+    curve_pieces(curve.knots(), &mapped).into_iter().map(|piece| piece.points).collect()
 }
 
 /// The hull of a coordinate over a piece: least, greatest, at the start and at the end.

@@ -17,12 +17,15 @@ const PATIENCE: usize = 5;
 /// A residual above this share of the rows' extent is bad: a billion times what a class is accepted with.
 const HOPELESS: f64 = 1e-2;
 
+/// The step after one below this is of its square: nothing, and what rounding makes of it.
+const TINY: f64 = 1e-13;
+
 /// What is left to fit at a point: the residual and its derivatives by two turns and two shifts of the axis.
 type Equation = [f64; 5];
 
 /// The axis of rows of points: `rows[b][a]` lies on circle `b` at angle `a`.
 ///
-/// It starts at the circle through the three points of a row that are farthest from one line. Gauss–Newton steps then fit
+/// It starts at the circle through three points of a row that are far apart. Gauss–Newton steps then fit
 /// direction and place: radius and height are the same along a row and, with `meridians`, points of one angle lie in a plane
 /// with the axis, which tells far more of the axis where arcs are short. None where no row is bent.
 pub(super) fn fit(rows: &[Vec<DVec3>], meridians: bool) -> Option<Axis> {
@@ -42,8 +45,8 @@ pub(super) fn fit(rows: &[Vec<DVec3>], meridians: bool) -> Option<Axis> {
         }
         let length = x[0].hypot(x[1]).max(x[2].hypot(x[3]) / axis.largest_radius(rows));
         axis = moved;
-        // steps that shrink no more are rounding
-        if length < 1e-6 && length >= 0.25 * before || length < f64::EPSILON {
+        // steps that shrink no more are rounding, and so is what follows a tiny one
+        if length < 1e-6 && length >= 0.25 * before || length < TINY {
             if with_meridians == meridians {
                 break;
             }
@@ -80,9 +83,9 @@ impl Axis {
     fn equations(&self, rows: &[Vec<DVec3>], meridians: bool) -> Vec<Equation> {
         let (u, v) = self.axis.any_orthonormal_pair();
         let least = 1e-6 * self.largest_radius(rows);
-        let mut all = Vec::new();
+        let mut all = Vec::with_capacity(3 * rows.len() * rows[0].len());
         for row in rows {
-            let (mut radial, mut axial) = (Vec::new(), Vec::new());
+            let [mut radial, mut axial] = [0, 1].map(|_| Vec::with_capacity(row.len()));
             for p in row {
                 let arm = *p - self.centre;
                 let (z, across) = (arm.dot(self.axis), self.across(*p));
@@ -104,7 +107,7 @@ impl Axis {
             for a in 0..rows[0].len() {
                 let side = self.axis.cross(self.meridian(rows, a));
                 let (x, y) = (side.dot(u), side.dot(v));
-                let (mut group, mut radii) = (Vec::new(), Vec::new());
+                let (mut group, mut radii) = (Vec::with_capacity(rows.len()), Vec::with_capacity(rows.len()));
                 for row in rows {
                     let arm = row[a] - self.centre;
                     let z = arm.dot(self.axis);
@@ -125,9 +128,17 @@ fn eliminate(group: &mut [Equation], shares: &[f64]) {
     if norm == 0.0 {
         return;
     }
-    for column in 0..5 {
-        let mean = group.iter().zip(shares).map(|(e, s)| e[column] * s).sum::<f64>() / norm;
-        group.iter_mut().zip(shares).for_each(|(e, s)| e[column] -= mean * s);
+    let mut means = [0.0; 5];
+    for (e, s) in group.iter().zip(shares) {
+        for k in 0..5 {
+            means[k] += e[k] * s;
+        }
+    }
+    let means = means.map(|sum| sum / norm);
+    for (e, s) in group.iter_mut().zip(shares) {
+        for k in 0..5 {
+            e[k] -= means[k] * s;
+        }
     }
 }
 
@@ -144,26 +155,22 @@ fn extent(rows: &[Vec<DVec3>]) -> f64 {
 /// The step that makes the residuals least.
 fn step(equations: &[Equation]) -> Option<[f64; 4]> {
     let column = |k: usize| equations.iter().map(|e| e[k]).collect::<Vec<f64>>();
-    let x = least_squares((1..5).map(column).collect(), column(0))?;
+    let x = least_squares([1, 2, 3, 4].map(column), column(0))?;
     Some([-x[0], -x[1], -x[2], -x[3]])
 }
 
-/// The axis of the circle through three points of a row that span the largest triangle with its first one, and the size of
-/// that triangle; none where all lie on a line.
+/// The axis of the circle through the first point of a row, the point farthest from it, and the one farthest from the line through both; and twice
+/// the area of their triangle. None where all lie on a line.
 pub(super) fn through(row: &[DVec3]) -> Option<(Axis, f64)> {
     let a = row[0];
-    let far = |p: &DVec3| p.distance_squared(a);
-    let size = row.iter().map(far).fold(0.0, f64::max).sqrt();
-    let mut best = (0.0, a, a);
-    for (i, b) in row.iter().enumerate() {
-        for c in &row[i + 1..] {
-            let area = (*b - a).cross(*c - a).length();
-            if area > best.0 {
-                best = (area, *b, *c);
-            }
-        }
-    }
-    let (area, b, c) = best;
+    let farthest = |measure: &dyn Fn(DVec3) -> f64| {
+        row.iter().fold((0.0, a), |(most, far), p| {
+            let here = measure(*p);
+            if here > most { (here, *p) } else { (most, far) }
+        })
+    };
+    let (size, b) = farthest(&|p| p.distance(a));
+    let (area, c) = farthest(&|p| (b - a).cross(p - a).length());
     if area <= 1e-9 * size * size {
         return None;
     }

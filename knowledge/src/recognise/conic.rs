@@ -38,7 +38,7 @@ pub(super) fn circle(curve: &NurbsCurve) -> Option<Kind> {
         axis = -axis;
         sweep = turned(axis)?;
     }
-    let sweep = full_if_closed(sweep, super::default_tolerance(&curve.clone().into()) * 1e-2 / radius);
+    let sweep = full_if_closed(sweep, super::tolerance_in(curve.control_box()) * 1e-2 / radius);
     Some(Kind::Circle { centre: origin + centre, axis, xdir, radius, sweep })
 }
 

@@ -33,23 +33,32 @@ pub(super) fn candidate(curve: &NurbsCurve) -> Option<Kind> {
         axis = -axis;
         sweep = turned(axis)?;
     }
-    let sweep = full_if_closed(sweep, super::default_tolerance(&curve.clone().into()) * 1e-2 / radii.0);
+    let sweep = full_if_closed(sweep, super::tolerance_in(curve.control_box()) * 1e-2 / radii.0);
     Some(Kind::Ellipse { centre: origin + centre, axis, xdir, radii, sweep })
 }
 
-/// Centre, direction of the long half-axis, and half-axes of the ellipse near to points: the least squares of
-/// `(x² + y²)/2 + a (x² - y²) + b x y + c x + d y + e`, which no ellipse makes trivial.
-fn fit(points: &[DVec2]) -> Option<(DVec2, DVec2, (f64, f64))> {
+/// The equation `(x² + y²)/2 + a (x² - y²) + b x y + c x + d y + e = 0` of a conic as `[e, c, d, a, b]`: no ellipse makes it trivial.
+pub(super) struct Equation([f64; 5]);
+
+impl Equation {
+    /// Its left side.
+    pub(super) fn at(&self, p: DVec2) -> f64 {
+        let Self([e, c, d, a, b]) = *self;
+        0.5 * p.length_squared() + a * (p.x * p.x - p.y * p.y) + b * p.x * p.y + c * p.x + d * p.y + e
+    }
+}
+
+/// The conic near to points: the least squares of its equation.
+pub(super) fn equation(points: &[DVec2]) -> Option<Equation> {
     let column = |of: fn(&DVec2) -> f64| points.iter().map(of).collect::<Vec<f64>>();
-    let columns = vec![
-        column(|_| 1.0),
-        column(|p| p.x),
-        column(|p| p.y),
-        column(|p| p.x * p.x - p.y * p.y),
-        column(|p| p.x * p.y),
-    ];
-    let k = least_squares(columns, column(|p| -0.5 * p.length_squared()))?;
-    let (e, c, d, a, b) = (k[0], k[1], k[2], k[3], k[4]);
+    let columns =
+        [column(|_| 1.0), column(|p| p.x), column(|p| p.y), column(|p| p.x * p.x - p.y * p.y), column(|p| p.x * p.y)];
+    least_squares(columns, column(|p| -0.5 * p.length_squared())).map(Equation)
+}
+
+/// Centre, direction of the long half-axis, and half-axes of the ellipse near to points.
+fn fit(points: &[DVec2]) -> Option<(DVec2, DVec2, (f64, f64))> {
+    let Equation([e, c, d, a, b]) = equation(points)?;
     let (xx, yy, xy) = (0.5 + a, 0.5 - a, 0.5 * b);
     let determinant = xx * yy - xy * xy;
     let centre = -0.5 * DVec2::new(yy * c - xy * d, xx * d - xy * c) / determinant;

@@ -8,6 +8,7 @@
 
 mod along;
 mod axis;
+mod beside;
 mod cone;
 mod conic;
 mod curves;
@@ -27,7 +28,7 @@ mod torus;
 mod turned;
 mod weights;
 
-use perpend_kernel::{Definition, Direction, NurbsSurface};
+use perpend_kernel::{Aabb, Definition, Direction, NurbsSurface};
 
 pub use refuted::Refuted;
 
@@ -38,7 +39,12 @@ use crate::item::{Basis, Item};
 /// coordinate, which the refinements of a definition far from the origin (degrees, knots, parametrisation) add up to.
 #[must_use]
 pub fn default_tolerance(definition: &Definition) -> f64 {
-    1e-10 * definition.size() + 64.0 * f64::EPSILON * definition.reach()
+    tolerance_in(definition.control_box())
+}
+
+/// The same, from the box of the control points.
+fn tolerance_in(bounds: Aabb) -> f64 {
+    1e-10 * bounds.diagonal() + 64.0 * f64::EPSILON * bounds.reach()
 }
 
 /// The deviation within which a class that a record states is believed: what the record names, but not less than
@@ -57,21 +63,33 @@ pub fn believed_tolerance(stated: f64, definition: &Definition) -> f64 {
 /// Angles of a recognised shape start at 0 and ascend, but for a cone, whose axis runs from its apex: there they may descend.
 #[must_use]
 pub fn recognise(definition: &Definition, tolerance: f64) -> Item<Kind> {
+    let (value, gap) = class_and_gap(definition, tolerance);
+    Item { value, basis: Basis::Proved { gap }, tolerance, of: definition.fingerprint() }
+}
+
+/// The class and its gap alone, as for [`recognise`]: what needs no record is spared the fingerprint.
+#[must_use]
+pub fn class_and_gap(definition: &Definition, tolerance: f64) -> (Kind, f64) {
     let found = match definition {
         Definition::NurbsCurve(curve) => {
-            let candidates: [fn(&_) -> Option<Kind>; 3] = [line::candidate, conic::circle, ellipse::candidate];
-            candidates.iter().find_map(|candidate| accept(candidate(curve)?, definition, tolerance))
+            let accept = |kind: Option<Kind>| accept(kind?, definition, tolerance);
+            let conics = || {
+                let fitted = !beside::conics(curve, tolerance);
+                fitted.then(|| accept(conic::circle(curve)).or_else(|| accept(ellipse::candidate(curve))))?
+            };
+            accept(line::candidate(curve, tolerance)).or_else(conics)
         }
         Definition::NurbsSurface(surface) => of_surface(surface, definition, tolerance),
     };
-    let (value, gap) = found.unwrap_or((Kind::FreeForm, 0.0));
-    Item { value, basis: Basis::Proved { gap }, tolerance, of: definition.fingerprint() }
+    found.unwrap_or((Kind::FreeForm, 0.0))
 }
 
 fn of_surface(surface: &NurbsSurface, definition: &Definition, tolerance: f64) -> Option<(Kind, f64)> {
     let directions = [Direction::U, Direction::V];
     let accept = |kind: Option<Kind>| accept(kind?, definition, tolerance);
-    if let Some(found) = plane::candidates(surface).into_iter().find_map(|kind| accept(Some(kind))) {
+    if !beside::planes(surface, tolerance)
+        && let Some(found) = plane::candidates(surface).into_iter().find_map(|kind| accept(Some(kind)))
+    {
         return Some(found);
     }
     let turned = directions.map(|angular| revolution::pose(surface, angular, tolerance));
@@ -85,11 +103,11 @@ fn of_surface(surface: &NurbsSurface, definition: &Definition, tolerance: f64) -
             return Some(found);
         }
     }
-    directions
-        .iter()
-        .find_map(|along| accept(extrusion::candidate(surface, *along)))
+    let straight = || directions.into_iter().filter(|along| !beside::rulings(surface, *along, tolerance));
+    straight()
+        .find_map(|along| accept(extrusion::candidate(surface, along)))
         .or_else(|| turned.iter().flatten().find_map(|pose| accept(revolution::candidate(pose))))
-        .or_else(|| directions.iter().find_map(|ruling| accept(Some(Kind::Ruled { ruling: *ruling }))))
+        .or_else(|| straight().find_map(|ruling| accept(Some(Kind::Ruled { ruling }))))
 }
 
 fn accept(kind: Kind, definition: &Definition, tolerance: f64) -> Option<(Kind, f64)> {

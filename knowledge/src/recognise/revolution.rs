@@ -3,10 +3,10 @@
 use glam::DVec3;
 use perpend_kernel::{Direction, NurbsSurface};
 
-use super::axis;
 use super::conic::full_if_closed;
 use super::curves::parameters;
 use super::turned::{Turned, UNIT, other};
+use super::{axis, beside};
 use crate::classification::Kind;
 
 /// A surface as it turns about an axis that fits it.
@@ -25,12 +25,15 @@ pub(super) struct Pose {
 pub(super) fn pose(surface: &NurbsSurface, angular: Direction, tolerance: f64) -> Option<Pose> {
     let bounds = surface.control_box();
     let origin = bounds.centre();
-    let rows: Vec<Vec<DVec3>> = parameters(surface.domain(other(angular)), 6)
-        .map(|t| {
-            let at = |s| if angular == Direction::U { surface.point(s, t) } else { surface.point(t, s) };
-            parameters(surface.domain(angular), 16).map(|s| at(s) - origin).collect()
-        })
-        .collect();
+    let mut rows: Vec<Vec<DVec3>> = Vec::with_capacity(7);
+    for t in parameters(surface.domain(other(angular)), 6) {
+        let at = |s| if angular == Direction::U { surface.point(s, t) } else { surface.point(t, s) };
+        let row: Vec<DVec3> = parameters(surface.domain(angular), 16).map(|s| at(s) - origin).collect();
+        if beside::circles(&row, tolerance) {
+            return None;
+        }
+        rows.push(row);
+    }
     let turned = |meridians| {
         let fitted = axis::fit(&rows, meridians)?;
         // the point of the axis that is nearest to the surface's middle

@@ -26,7 +26,7 @@ pub(super) fn gap(surface: &NurbsSurface, ruling: Direction) -> Option<f64> {
     let mut off = 0.0_f64;
     for j in 1..m - 1 {
         let middle = row(j);
-        let shares = least_squares(vec![numbers(&first), numbers(&last)], numbers(&middle))?;
+        let shares = least_squares([numbers(&first), numbers(&last)], numbers(&middle))?;
         let (a, b) = (shares[0].max(0.0), shares[1].max(0.0));
         for ((p, q), r) in middle.iter().zip(&first).zip(&last) {
             let rest = *p - a * *q - b * *r;

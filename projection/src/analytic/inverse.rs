@@ -262,15 +262,19 @@ fn pair(point: &DVec4) -> DVec2 {
 /// Whether all pairs lie within a sixth of a turn of the first and of the last.
 fn within_a_sixth(row: &[DVec2]) -> bool {
     let last = row[row.len() - 1];
-    let near = |a: DVec2, b: DVec2| a.dot(b) >= 0.5 * a.length() * b.length();
+    let near = |a: DVec2, b: DVec2| {
+        let product = a.dot(b);
+        product >= 0.0 && product * product >= 0.25 * (a.length_squared() * b.length_squared())
+    };
     row.iter().all(|pair| near(*pair, row[0]) && near(*pair, last))
 }
 
 /// Whether a row departs from equal steps by more than [`STRAIGHT`].
 fn is_bent(row: &[DVec2]) -> bool {
     let (first, last, p) = (row[0], row[row.len() - 1], row.len() - 1);
-    let off = |(i, pair): (usize, &DVec2)| (*pair - first).distance(i as f64 / p as f64 * (last - first));
-    row.iter().enumerate().map(off).fold(0.0, f64::max) > STRAIGHT * first.distance(last)
+    let step = (last - first) / p as f64;
+    let most = (STRAIGHT * STRAIGHT) * first.distance_squared(last);
+    row.iter().enumerate().any(|(i, pair)| (*pair - first).distance_squared(i as f64 * step) > most)
 }
 
 /// De Casteljau's algorithm at one half.

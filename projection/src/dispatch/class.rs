@@ -1,7 +1,7 @@
 //! The class: proved, or acquired again.
 
 use perpend_kernel::Definition;
-use perpend_knowledge::{Basis, Item, Kind, Record, believed_tolerance, default_tolerance, prove, recognise};
+use perpend_knowledge::{Basis, Kind, Record, believed_tolerance, class_and_gap, default_tolerance, prove};
 
 use crate::answer::Method;
 use crate::plan::Reason;
@@ -11,7 +11,11 @@ const FIELD: &str = "classification.kind";
 
 /// The class of a definition, with the gap that this program has proved.
 pub(super) struct Class {
-    pub item: Item<Kind>,
+    pub kind: Kind,
+    /// How it is known.
+    basis: Basis,
+    /// Within what it was looked for.
+    tolerance: f64,
     /// Bound of the distance between the definition and the shape, both ways.
     pub gap: f64,
     /// Whether the record did not have it.
@@ -33,26 +37,24 @@ impl Class {
                 doubt("not believed: it was computed from another definition; the class is acquired again".to_owned());
             } else {
                 match prove(&item.value, definition, believed_tolerance(item.tolerance, definition)) {
-                    Ok(gap) => return Self { item: item.clone(), gap, acquired: false },
+                    Ok(gap) => {
+                        let (kind, basis, tolerance) = (item.value.clone(), item.basis, item.tolerance);
+                        return Self { kind, basis, tolerance, gap, acquired: false };
+                    }
                     Err(refuted) => doubt(format!("not believed: {refuted}; the class is acquired again")),
                 }
             }
         }
-        let item = recognise(definition, tolerance);
-        let gap = match item.basis {
-            Basis::Proved { gap } => gap,
-            // recognition proves what it accepts; on any other basis nothing is known of the gap
-            _ => f64::INFINITY,
-        };
-        Self { item, gap, acquired: true }
+        let (kind, gap) = class_and_gap(definition, tolerance);
+        Self { kind, basis: Basis::Proved { gap }, tolerance, gap, acquired: true }
     }
 
     /// What the class contributes to a plan of this method.
     pub(super) fn reason(&self, method: Method, has_closed_form: bool, asked: f64) -> Reason {
-        let name = words(&self.item.value);
+        let name = words(&self.kind);
         let source = if self.acquired { "acquired for this plan: " } else { "" };
-        let (gap, tolerance) = (self.gap, self.item.tolerance);
-        let effect = match (method, &self.item.value) {
+        let (gap, tolerance) = (self.gap, self.tolerance);
+        let effect = match (method, &self.kind) {
             (Method::Analytic, _) => format!(
                 "{source}{name} has a closed form, which answers; the shape is proved within {gap:.1e} of the definition, and every \
                  lower bound is lowered by that"
@@ -67,7 +69,7 @@ impl Class {
             ),
             _ => format!("{source}{name}, for which no closed form pays; the certified hierarchy answers"),
         };
-        Reason { item: FIELD.to_owned(), basis: Some(self.item.basis), effect }
+        Reason { item: FIELD.to_owned(), basis: Some(self.basis), effect }
     }
 }
 

@@ -30,7 +30,7 @@ pub(crate) fn dispatch(definition: &Arc<Definition>, record: Option<&Record>, la
     let mut reasons = Vec::new();
     let class = Class::of(definition, record, &mut reasons);
     let gap = DEFAULT_GAP * definition.size();
-    let analytic = Analytic::new(definition, &class.item.value, class.gap);
+    let analytic = Analytic::new(definition, &class.kind, class.gap);
     let method = if analytic.is_some() && class.gap <= gap { Method::Analytic } else { Method::Hierarchy };
     reasons.push(class.reason(method, analytic.is_some(), gap));
     let settings = settings::settings(definition, record, landmarks, gap, &mut reasons);

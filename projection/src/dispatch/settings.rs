@@ -14,17 +14,15 @@ pub(super) fn settings(
     gap: f64,
     reasons: &mut Vec<Reason>,
 ) -> Settings {
-    let of = definition.fingerprint();
-    let part = record.and_then(|record| record.representation.as_ref());
-    if part.is_none() {
+    let Some(part) = record.and_then(|record| record.representation.as_ref()) else {
         reasons.push(Reason {
             item: "representation".to_owned(),
             basis: None,
             effect: "not known; no solver of this plan needs it".to_owned(),
         });
-    }
-    let none = Representation::default();
-    let part = part.unwrap_or(&none);
+        return Settings { gap, cuts: landmarks.cusps.clone(), decomposition: Vec::new() };
+    };
+    let of = definition.fingerprint();
     let cuts = cuts(definition, part, landmarks, of, reasons);
     breaks(part, of, reasons);
     closed(part, of, reasons);

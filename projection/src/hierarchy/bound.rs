@@ -168,7 +168,8 @@ mod tests {
                     (random.point() * weight).extend(weight)
                 })
                 .collect();
-            let leaf = Leaf::new(Piece { degree, net, u: (0.0, 1.0), v: (0.0, 1.0) }, rational, Level::new());
+            let piece = Piece { degree, net, rational, u: (0.0, 1.0), v: (0.0, 1.0) };
+            let leaf = Leaf::new(piece, Level::new(), &mut Vec::new());
             let (s, t) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
             let jet = leaf.jet(s, t);
             let x = jet.point() + random.point() * 10.0_f64.powf(random.between(-12.0, 2.0));

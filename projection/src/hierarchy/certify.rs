@@ -27,7 +27,7 @@ use glam::DVec3;
 
 use super::ROUNDING;
 use super::bound::{least_from, value_error};
-use super::convex::{self, Curvature, Patch};
+use super::convex::{self, Bend, Curvature, Patch};
 use super::form::{form, rounding_bound};
 use super::leaf::Leaf;
 use super::net::{self, Edge, Layout};
@@ -195,7 +195,7 @@ impl Proof<'_> {
         self.formed = state.tau();
         memory.nets.clear();
         memory.cells.clear();
-        form(leaf.level, leaf.shape(), &leaf.opened().tables, self.x, self.formed, &mut memory.nets);
+        form(leaf.level, leaf.shape(), leaf.tables(), self.x, self.formed, &mut memory.nets);
         state.done.pieces += 1;
         let layout = leaf.shape().layout();
         let rounding = rounding_bound(leaf.degree, self.x.length(), leaf.radius, self.formed, leaf.heaviest);
@@ -231,7 +231,8 @@ impl Proof<'_> {
             return Verdict::Again(cell);
         }
         let patch = Patch { g, layout: cell.layout, extent: cell.extent(), rounding: cell.rounding };
-        if let Some(curvature) = convex::curvature(leaf.level, patch, &mut memory.matrices) {
+        let bend = convex::bend(leaf.level, patch, &mut memory.matrices);
+        if let Bend::Convex(curvature) = bend {
             if corners_close(cell, g, curvature, threshold) || self.newton_closes(cell, curvature, state) {
                 return Verdict::Closed;
             }
@@ -247,30 +248,26 @@ impl Proof<'_> {
                 return Verdict::Again(cell);
             }
         }
-        if self.valley_closes(cell, threshold, memory) {
-            return Verdict::Closed;
+        match bend {
+            Bend::Valley { in_s, bend } if self.valley_closes(cell, in_s, bend, threshold, memory) => Verdict::Closed,
+            _ => Verdict::Open { least },
         }
-        Verdict::Open { least }
     }
 
-    /// Test 5, along the lines of the point that Newton's method found in the leaf. The whole leaf is split first: most forms need no more.
-    fn valley_closes(&self, cell: Cell, threshold: f64, memory: &mut Memory) -> bool {
-        let Layout { m, n } = cell.layout;
-        let (extent_s, extent_t) = cell.extent();
-        if m == 0 || n == 0 || extent_s * extent_t == 1.0 {
+    /// Test 5, along the line of the point that Newton's method found in the leaf. The whole leaf is split first: most forms need no more.
+    fn valley_closes(&self, cell: Cell, in_s: bool, bend: f64, threshold: f64, memory: &mut Memory) -> bool {
+        let extent = cell.extent();
+        if extent == (1.0, 1.0) {
             return false;
         }
         let g = &memory.nets[cell.offset..cell.offset + cell.layout.len()];
         let rounding = (cell.rounding, net::largest(self.part.leaf.level, g, cell.layout));
-        let share = |x: f64, from: f64, extent: f64| ((x - from) / extent).clamp(0.0, 1.0);
-        let lines = [
-            (true, share(self.found.0, cell.domain.s.0, extent_s)),
-            (false, share(self.found.1, cell.domain.t.0, extent_t)),
-        ];
-        lines.into_iter().any(|(in_s, at)| {
-            let bound = valley::least_beside((g, cell.layout), in_s, at, rounding, &mut memory.line);
-            bound.is_some_and(|bound| bound > threshold + cell.slack)
-        })
+        let (found, from, extent) = match in_s {
+            true => (self.found.0, cell.domain.s.0, extent.0),
+            false => (self.found.1, cell.domain.t.0, extent.1),
+        };
+        let at = ((found - from) / extent).clamp(0.0, 1.0);
+        valley::least_beside((g, cell.layout), in_s, at, bend, rounding, &mut memory.line) > threshold + cell.slack
     }
 
     /// A box that is only just positive may hold a foot as near as the best, within the gap.

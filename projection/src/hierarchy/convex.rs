@@ -27,16 +27,54 @@ const WORTHWHILE: f64 = 0.02;
 /// Above this correlation of the interval test the matrix test, if it holds, gives the better bound.
 pub(super) const CORRELATED: f64 = 0.98;
 
+/// How a form bends on a box.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub(super) enum Bend {
+    /// Convex, with a proven lower bound of the Hessian.
+    Convex(Curvature),
+    /// Convex in s alone (`in_s`) or in t alone, with a lower bound of its second differences there, as far as the coefficients tell.
+    Valley { in_s: bool, bend: f64 },
+    /// Neither, as far as the coefficients tell.
+    Open,
+}
+
+/// How the form is found to bend. `scratch` is working memory.
+pub(super) fn bend(level: Level, patch: Patch<'_>, scratch: &mut Vec<f64>) -> Bend {
+    dispatch!(level, simd => with_extent!(patch.layout, extent => {
+        let differences = net::differences(simd, patch.g, extent);
+        match either(simd, patch, extent, differences, scratch) {
+            Some(curvature) => Bend::Convex(curvature),
+            None => one_way(patch, differences),
+        }
+    }))
+}
+
 /// A proven lower bound of the Hessian on the box, if the form is found convex there.
-///
-/// `scratch` is working memory.
 pub(super) fn curvature(level: Level, patch: Patch<'_>, scratch: &mut Vec<f64>) -> Option<Curvature> {
-    dispatch!(level, simd => with_extent!(patch.layout, extent => either(simd, patch, extent, scratch)))
+    match bend(level, patch, scratch) {
+        Bend::Convex(curvature) => Some(curvature),
+        Bend::Valley { .. } | Bend::Open => None,
+    }
+}
+
+/// A form in two variables that is convex in one of them alone.
+fn one_way(Patch { layout, rounding, .. }: Patch<'_>, differences: Differences) -> Bend {
+    let (down, along) = (differences.down - 4.0 * rounding, differences.along - 4.0 * rounding);
+    match (layout.m > 0 && layout.n > 0, down > 0.0, along > 0.0) {
+        (true, true, false) => Bend::Valley { in_s: true, bend: down },
+        (true, false, true) => Bend::Valley { in_s: false, bend: along },
+        _ => Bend::Open,
+    }
 }
 
 #[inline(always)]
-fn either<S: Simd>(simd: S, patch: Patch<'_>, extent: impl Extent, scratch: &mut Vec<f64>) -> Option<Curvature> {
-    let differences = net::differences(simd, patch.g, extent);
+fn either<S: Simd>(
+    simd: S,
+    patch: Patch<'_>,
+    extent: impl Extent,
+    differences: Differences,
+    scratch: &mut Vec<f64>,
+) -> Option<Curvature> {
     match patch.layout {
         Layout { m: 0, .. } => {
             in_one(patch, differences).map(|t| Curvature { s: 0.0, t: t / patch.extent.1.powi(2) })

@@ -35,6 +35,7 @@ use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x4};
 use glam::{DVec3, DVec4};
 use perpend_kernel::binomial;
+use smallvec::SmallVec;
 
 use super::ROUNDING;
 use super::net::{LANES, Layout};
@@ -94,33 +95,67 @@ fn combine<S: Simd, const RATIONAL: bool>(simd: S, tables: &[f64], x: DVec3, las
     }
 }
 
+/// The Bernstein coefficients of `c0`, `c1` and `c2`, in row order.
+pub(super) struct Coefficients {
+    /// `c0`.
+    pub squares: Vec<f64>,
+    /// `c1` and, as fourth coordinate, `c2`.
+    pub vectors: Vec<DVec4>,
+}
+
+impl Coefficients {
+    /// Points are scaled by their binomials once, products are summed over unordered pairs, and the sums are divided once.
+    pub(super) fn of(leaf: Shape<'_>) -> Self {
+        let ((p, q), Layout { m, n }) = (leaf.degree, leaf.layout());
+        let mut scaled: SmallVec<[DVec4; 16]> = leaf.net.into();
+        for (i, row) in scaled.chunks_exact_mut(q + 1).enumerate() {
+            row.iter_mut().enumerate().for_each(|(j, a)| *a *= binomial(p, i) * binomial(q, j));
+        }
+        let len = (m + 1) * (n + 1);
+        let (mut squares, mut vectors) = (vec![0.0; len], vec![DVec4::ZERO; len]);
+        for i in 0..=p {
+            for j in 0..=q {
+                let a = scaled[i * (q + 1) + j];
+                let at = 2 * i * (n + 1) + 2 * j;
+                squares[at] += a.truncate().length_squared();
+                vectors[at] += a.w * a;
+                for k in i..=p {
+                    // in the row itself, the points behind this one
+                    let from = if k == i { j + 1 } else { 0 };
+                    let at = (i + k) * (n + 1) + j;
+                    let sums = squares[at..].iter_mut().zip(&mut vectors[at..]).skip(from);
+                    for ((square, vector), b) in sums.zip(&scaled[k * (q + 1) + from..(k + 1) * (q + 1)]) {
+                        *square += 2.0 * a.truncate().dot(b.truncate());
+                        *vector += b.w * a + a.w * *b;
+                    }
+                }
+            }
+        }
+        for i in 0..=m {
+            for j in 0..=n {
+                let binomials = binomial(m, i) * binomial(n, j);
+                squares[i * (n + 1) + j] /= binomials;
+                vectors[i * (n + 1) + j] /= binomials;
+            }
+        }
+        Self { squares, vectors }
+    }
+}
+
 /// The tables, each laid out as the form's net: `c0`, the coordinates of `c1`, and `c2` where the leaf is rational.
-///
-/// Points are scaled by their binomials once, products are summed over unordered pairs, and the sums are divided once.
 pub(super) fn tables(leaf: Shape<'_>) -> Box<[f64]> {
-    let ((p, q), layout) = (leaf.degree, leaf.layout());
+    let (layout, Coefficients { squares, vectors }) = (leaf.layout(), Coefficients::of(leaf));
     let len = layout.len();
-    let scaled: Vec<DVec4> =
-        leaf.net.iter().enumerate().map(|(e, a)| *a * (binomial(p, e / (q + 1)) * binomial(q, e % (q + 1)))).collect();
-    let mut sums = vec![[0.0; 5]; (layout.m + 1) * (layout.n + 1)];
-    for (e, a) in scaled.iter().enumerate() {
-        for (f, b) in scaled.iter().enumerate().skip(e) {
-            let at = (e / (q + 1) + f / (q + 1)) * (layout.n + 1) + e % (q + 1) + f % (q + 1);
-            let (twice, once) = if e == f { (1.0, 0.5) } else { (2.0, 1.0) };
-            let c1 = once * (a.truncate() * b.w + b.truncate() * a.w);
-            let products = [twice * a.truncate().dot(b.truncate()), c1.x, c1.y, c1.z, twice * a.w * b.w];
-            sums[at].iter_mut().zip(products).for_each(|(sum, product)| *sum += product);
-        }
-    }
     let mut tables = vec![0.0; len * if leaf.rational { 5 } else { 4 }];
-    for (at, sum) in sums.iter().enumerate() {
-        let (i, j) = (at / (layout.n + 1), at % (layout.n + 1));
-        let binomials = binomial(layout.m, i) * binomial(layout.n, j);
-        for (table, sum) in tables.chunks_exact_mut(len).zip(sum) {
-            table[layout.at(i, j)] = sum / binomials;
+    for (k, table) in tables.chunks_exact_mut(len).enumerate() {
+        for i in 0..=layout.m {
+            for j in 0..=layout.n {
+                let from = i * (layout.n + 1) + j;
+                table[layout.at(i, j)] = if k == 0 { squares[from] } else { vectors[from][k - 1] };
+            }
         }
+        layout.pad(table);
     }
-    tables.chunks_exact_mut(len).for_each(|table| layout.pad(table));
     tables.into()
 }
 

@@ -24,7 +24,7 @@ pub(super) fn closes(part: Part<'_>, first: bool, state: &mut State<'_>) -> bool
 fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut State<'_>) -> bool {
     let leaf = part.leaf;
     let x = state.point - leaf.origin;
-    let ranges = &leaf.opened().ranges;
+    let ranges = leaf.ranges();
     let view = ranges.view(x, leaf.along_axes(x));
     let domain = ranges.lowest(&view);
     if let Some((s, t)) = domain.corner() {

@@ -34,35 +34,42 @@ pub(super) struct Leaf {
     pub v: (f64, f64),
     pub bounds: Aabb,
     oriented: OrientedBox,
-    opened: OnceLock<Opened>,
+    /// Made by the first glance at the leaf.
+    ranges: OnceLock<Box<Ranges>>,
+    /// Made by the first proof that needs the form.
+    tables: OnceLock<Box<[f64]>>,
     /// The middle point and the pseudo-inverse of the derivatives there: a linear guess of the foot.
     middle: DVec3,
     inverse: [DVec3; 2],
 }
 
-/// What a leaf's first proof makes.
-#[derive(Debug)]
-pub(super) struct Opened {
-    pub tables: Box<[f64]>,
-    pub ranges: Ranges,
-}
-
 impl Leaf {
-    pub(super) fn new(piece: Piece, rational: bool, level: Level) -> Self {
-        let Piece { degree, mut net, u, v } = piece;
+    /// `points` is working memory.
+    pub(super) fn new(piece: Piece, level: Level, points: &mut Vec<DVec3>) -> Self {
+        piece.write_points(points);
+        let Piece { degree, mut net, rational, u, v } = piece;
         let (p, q) = degree;
-        let bounds = Aabb::around(net.iter().map(|h| cartesian(*h)));
+        let bounds = Aabb::around(points.iter().copied());
         let origin = bounds.centre();
-        let scale = power_of_two_below(net.iter().fold(0.0_f64, |a, h| a.max(h.w))).recip();
-        for h in &mut net {
-            // what cutting has left of a polynomial's weights is 1 but for rounding; its form takes them for 1
-            let weight = if rational { h.w * scale } else { 1.0 };
-            *h = ((cartesian(*h) - origin) * weight).extend(weight);
+        let (mut lightest, mut heaviest) = (1.0, 1.0);
+        if rational {
+            (lightest, heaviest) = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+            let scale = power_of_two_below(heaviest).recip();
+            (lightest, heaviest) = (lightest * scale, heaviest * scale);
+            for (h, x) in net.iter_mut().zip(points.iter_mut()) {
+                let weight = h.w * scale;
+                *h = ((*x - origin) * weight).extend(weight);
+                *x = cartesian(*h);
+            }
+        } else {
+            for (h, x) in net.iter_mut().zip(points.iter_mut()) {
+                *x -= origin;
+                *h = x.extend(1.0);
+            }
         }
-        let local: Vec<DVec3> = net.iter().map(|h| cartesian(*h)).collect();
-        let radius = local.iter().fold(0.0_f64, |r, x| r.max(x.length()));
-        let (lightest, heaviest) = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
-        let (along, across) = directions(&local, degree);
+        let farthest = points.iter().map(|x| x.length_squared()).fold(0.0, |a, b| if b > a { b } else { a });
+        let radius = farthest.sqrt();
+        let (along, across) = directions(points, degree);
         let middle = Jet::at(level, &net, (p, q), rational, 0.5, 0.5);
         Self {
             degree,
@@ -76,8 +83,9 @@ impl Leaf {
             u,
             v,
             bounds,
-            oriented: OrientedBox::around(&local, along, across),
-            opened: OnceLock::new(),
+            oriented: OrientedBox::around(points, radius, along, across),
+            ranges: OnceLock::new(),
+            tables: OnceLock::new(),
             middle: middle.point(),
             inverse: pseudo_inverse(middle.ps.truncate(), middle.pt.truncate()),
         }
@@ -91,14 +99,18 @@ impl Leaf {
         Shape { degree: self.degree, rational: self.rational, net: &self.net }
     }
 
-    /// Tables and ranges of the leaf's form; made when first asked for, as most leaves of a large entity never are.
-    pub(super) fn opened(&self) -> &Opened {
-        self.opened.get_or_init(|| {
-            let tables = form::tables(self.shape());
-            let ranges =
-                Ranges::new(self.shape(), &tables, self.oriented.axes(), self.radius, (self.lightest, self.heaviest));
-            Opened { tables, ranges }
+    /// The ranges; made when first asked for, as most leaves of a large entity never are.
+    #[inline]
+    pub(super) fn ranges(&self) -> &Ranges {
+        self.ranges.get_or_init(|| {
+            let weights = (self.lightest, self.heaviest);
+            Box::new(Ranges::new(self.shape(), self.oriented.axes(), self.radius, weights))
         })
+    }
+
+    /// The tables of the form; made when first asked for, as the ranges prove most leaves.
+    pub(super) fn tables(&self) -> &[f64] {
+        self.tables.get_or_init(|| form::tables(self.shape()))
     }
 
     /// A vector along the axes of the oriented box.
@@ -137,14 +149,15 @@ impl Leaf {
     /// The leaf as a piece again, about the entity's origin.
     fn piece(&self) -> Piece {
         let net = self.net.iter().map(|h| (h.truncate() + self.origin * h.w).extend(h.w)).collect();
-        Piece { degree: self.degree, net, u: self.u, v: self.v }
+        Piece { degree: self.degree, net, rational: self.rational, u: self.u, v: self.v }
     }
 
     /// Both halves in the longer direction, each about its own origin.
     pub(super) fn refine(&self) -> (Direction, [Self; 2]) {
         let piece = self.piece();
         let direction = piece.longer();
-        (direction, piece.halves(direction).map(|half| Self::new(half, self.rational, self.level)))
+        let mut points = Vec::with_capacity(piece.net.len());
+        (direction, piece.halves(direction).map(|half| Self::new(half, self.level, &mut points)))
     }
 
     /// The definition's parameters at `(s, t)`; the ends of the leaf exactly.
@@ -175,8 +188,14 @@ fn directions(points: &[DVec3], (p, q): (usize, usize)) -> (DVec3, DVec3) {
         return (along, c - a + d - b);
     }
     let chord = along.normalize_or_zero();
-    let rejected = points.iter().map(|x| (*x - a) - (*x - a).dot(chord) * chord);
-    let across = rejected.fold(DVec3::ZERO, |far, x| if x.length_squared() > far.length_squared() { x } else { far });
+    let (mut across, mut farthest) = (DVec3::ZERO, 0.0);
+    for x in points {
+        let rejected = (*x - a) - (*x - a).dot(chord) * chord;
+        let length = rejected.length_squared();
+        if length > farthest {
+            (across, farthest) = (rejected, length);
+        }
+    }
     (along, across)
 }
 

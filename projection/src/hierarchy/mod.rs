@@ -142,11 +142,15 @@ impl Hierarchy {
             Definition::NurbsCurve(curve) => (curve.degree(), 0),
             Definition::NurbsSurface(surface) => surface.degree(),
         };
-        let mut pieces = Piece::all(definition, &net);
+        let mut pieces = Piece::all(definition, &net, rational);
         for cusp in cusps {
             pieces = pieces.into_iter().flat_map(|piece| piece.cut(*cusp)).collect();
         }
-        let leaves: Vec<Leaf> = split_bent(pieces).into_iter().map(|piece| Leaf::new(piece, rational, level)).collect();
+        let mut points = Vec::new();
+        let leaves: Vec<Leaf> = split_bent(pieces, &mut points)
+            .into_iter()
+            .map(|piece| Leaf::new(piece, level, &mut points))
+            .collect();
         let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
         let whole = |range: fn(&Leaf) -> (f64, f64)| {
             leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))
@@ -251,13 +255,13 @@ impl Hierarchy {
     }
 }
 
-/// Splits the pieces that depart too far from an affine map.
-fn split_bent(pieces: Vec<Piece>) -> Vec<Piece> {
+/// Splits the pieces that depart too far from an affine map; `points` is working memory.
+fn split_bent(pieces: Vec<Piece>, points: &mut Vec<DVec3>) -> Vec<Piece> {
     let mut whole = Vec::with_capacity(pieces.len());
     let mut waiting: Vec<(Piece, u32)> = pieces.into_iter().rev().map(|piece| (piece, 0)).collect();
     while let Some((piece, depth)) = waiting.pop() {
         let room = depth < PREPARED_DEPTH && (whole.len() + waiting.len()) * piece.net.len() < MOST_POINTS;
-        match piece.wants_split().filter(|_| room) {
+        match piece.wants_split(points).filter(|_| room) {
             None => whole.push(piece),
             Some(direction) => {
                 let [low, high] = piece.halves(direction);
@@ -490,7 +494,7 @@ mod tests {
             let curve = NurbsCurve::new(degree, knots(degree, n, &mut random), points, None).expect("valid");
             let hierarchy = Hierarchy::new(&curve.into(), &[0.123, 0.456]);
             let leaves =
-                hierarchy.leaves.iter().flat_map(|leaf| [&leaf.net, &leaf.refine().1[0].net].map(Clone::clone));
+                hierarchy.leaves.iter().flat_map(|leaf| [leaf.net.clone(), leaf.refine().1[0].net.clone()]);
             assert!(leaves.flatten().all(|h| h.w == 1.0));
             assert!(hierarchy.leaves.iter().all(|leaf| (leaf.lightest, leaf.heaviest) == (1.0, 1.0)));
         }

@@ -14,19 +14,19 @@ pub(super) struct OrientedBox {
 }
 
 impl OrientedBox {
-    /// The box around points with its first axis along `along` and its third along the normal of `along` and `across`.
+    /// The box around points within `reach` of the origin, with its first axis along `along` and its third along the normal of `along` and
+    /// `across`.
     ///
     /// The distance to the box is a bound only if the axes are orthonormal. Where the two directions are parallel to rounding
-    /// their cross product is noise; so the normal is made orthogonal twice and the result is tested, and where it fails the
+    /// their cross product is noise; so the normal is made orthogonal, twice at most, and the result is tested, and where it fails the
     /// box is aligned with the coordinate axes.
-    pub(super) fn around(points: &[DVec3], along: DVec3, across: DVec3) -> Self {
+    pub(super) fn around(points: &[DVec3], reach: f64, along: DVec3, across: DVec3) -> Self {
         let axes = orthonormal(along, across)
             .or_else(|| orthonormal(along, along.any_orthogonal_vector()))
             .unwrap_or([DVec3::X, DVec3::Y, DVec3::Z]);
         let axes = DMat3::from_cols(axes[0], axes[1], axes[2]).transpose();
         let bounds = Aabb::around(points.iter().map(|p| axes * *p));
         // the products of the points and of the query with the axes round, each by less than 6 u of their lengths
-        let reach = points.iter().fold(0.0_f64, |r, p| r.max(p.length()));
         let margin = DVec3::splat(16.0 * ROUNDING * reach);
         Self { axes, extent: Aabb { min: bounds.min - margin, max: bounds.max + margin } }
     }
@@ -48,11 +48,14 @@ impl OrientedBox {
 fn orthonormal(along: DVec3, across: DVec3) -> Option<[DVec3; 3]> {
     let x = along.try_normalize()?;
     let mut n = x.cross(across).try_normalize()?;
+    let orthogonal = |a: DVec3, b: DVec3| a.dot(b).abs() < 1e-15;
     for _ in 0..2 {
+        if orthogonal(x, n) {
+            break;
+        }
         n = (n - n.dot(x) * x).try_normalize()?;
     }
     let m = n.cross(x).try_normalize()?;
-    let orthogonal = |a: DVec3, b: DVec3| a.dot(b).abs() < 1e-15;
     (orthogonal(x, n) && orthogonal(m, n) && orthogonal(m, x)).then_some([x, m, n])
 }
 
@@ -73,7 +76,7 @@ mod tests {
         let across = net[1] - net[0] + net[3] - net[2];
         let p = DVec3::new(-6.0, 3.0, -9.0);
         let nearest = net.iter().map(|c| c.distance(p)).fold(f64::MAX, f64::min);
-        let bounds = OrientedBox::around(&net, along, across);
+        let bounds = OrientedBox::around(&net, 1.2, along, across);
         assert!(bounds.distance_squared(p).sqrt() <= nearest, "no control point is nearer than the box");
         for row in 0..3 {
             let length = bounds.axes.row(row).length();

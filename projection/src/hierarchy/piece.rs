@@ -1,6 +1,6 @@
 //! Bézier pieces in an entity's own coordinates, and when to split them before any query.
 
-use glam::DVec4;
+use glam::{DVec3, DVec4};
 use perpend_kernel::bezier::{curve_pieces, surface_pieces};
 use perpend_kernel::{Definition, Direction, cartesian};
 
@@ -10,19 +10,22 @@ pub(super) struct Piece {
     pub degree: (usize, usize),
     /// `(p + 1)(q + 1)` points in row order.
     pub net: Vec<DVec4>,
+    /// Whether its weights count; else they are 1, but for rounding.
+    pub rational: bool,
     pub u: (f64, f64),
     pub v: (f64, f64),
 }
 
 impl Piece {
     /// The pieces of a definition whose homogeneous net in some coordinates is `net`, split at every knot.
-    pub(super) fn all(definition: &Definition, net: &[DVec4]) -> Vec<Self> {
+    pub(super) fn all(definition: &Definition, net: &[DVec4], rational: bool) -> Vec<Self> {
         match definition {
             Definition::NurbsCurve(curve) => curve_pieces(curve.knots(), net)
                 .into_iter()
                 .map(|piece| Self {
                     degree: (curve.degree(), 0),
                     net: piece.points,
+                    rational,
                     u: (piece.span.start, piece.span.end),
                     v: (0.0, 0.0),
                 })
@@ -33,6 +36,7 @@ impl Piece {
                     .map(|piece| Self {
                         degree: piece.degree,
                         net: piece.points,
+                        rational,
                         u: (piece.spans.0.start, piece.spans.0.end),
                         v: (piece.spans.1.start, piece.spans.1.end),
                     })
@@ -41,11 +45,21 @@ impl Piece {
         }
     }
 
+    /// Its control points, in place of what `points` held.
+    pub(super) fn write_points(&self, points: &mut Vec<DVec3>) {
+        points.clear();
+        if self.rational {
+            points.extend(self.net.iter().map(|h| cartesian(*h)));
+        } else {
+            points.extend(self.net.iter().map(|h| h.truncate()));
+        }
+    }
+
     /// Both halves in a direction, by de Casteljau: halving is exact, one rounding a level.
-    pub(super) fn halves(&self, direction: Direction) -> [Self; 2] {
+    pub(super) fn halves(self, direction: Direction) -> [Self; 2] {
         let (p, q) = self.degree;
         let width = q + 1;
-        let (mut low, mut high) = (self.clone(), self.clone());
+        let (mut low, mut high) = (self.clone(), self);
         let (lines, degree, step, across) = match direction {
             Direction::U => (width, p, width, 1),
             Direction::V => (p + 1, q, 1, width),
@@ -63,11 +77,11 @@ impl Piece {
         }
         match direction {
             Direction::U => {
-                low.u.1 = middle(self.u);
+                low.u.1 = middle(low.u);
                 high.u.0 = low.u.1;
             }
             Direction::V => {
-                low.v.1 = middle(self.v);
+                low.v.1 = middle(low.v);
                 high.v.0 = low.v.1;
             }
         }
@@ -97,7 +111,9 @@ impl Piece {
     /// The direction in which the control net is longer.
     pub(super) fn longer(&self) -> Direction {
         let (p, q) = self.degree;
-        let point = |i: usize, j: usize| cartesian(self.net[i * (q + 1) + j]);
+        let mut points = Vec::with_capacity(self.net.len());
+        self.write_points(&mut points);
+        let point = |i: usize, j: usize| points[i * (q + 1) + j];
         let along_u = |j: usize| (1..=p).map(|i| point(i, j).distance(point(i - 1, j))).sum::<f64>();
         let along_v = |i: usize| (1..=q).map(|j| point(i, j).distance(point(i, j - 1))).sum::<f64>();
         let longest = |lengths: &mut dyn Iterator<Item = f64>| lengths.fold(0.0, f64::max);
@@ -111,66 +127,90 @@ impl Piece {
     /// A piece is split while it departs too far from an affine map: while `(n - 1) max|second difference| / max|first
     /// difference|` of the net exceeds 1 on a curve and 0.8 times the sine of the angle between the directions on a surface
     /// (measured: half and twice those cost 5 to 25 % more; skew is what hurts most), or while its weights are more than 16
-    /// apart.
-    pub(super) fn wants_split(&self) -> Option<Direction> {
+    /// apart. `points` is working memory.
+    pub(super) fn wants_split(&self, points: &mut Vec<DVec3>) -> Option<Direction> {
         let (p, q) = self.degree;
-        let width = q + 1;
-        let points: Vec<_> = self.net.iter().map(|h| cartesian(*h)).collect();
-        let weight = |i: usize| self.net[i].w;
-        let (mut u, mut v) = (Bend::default(), Bend::default());
-        for i in 0..=p {
-            for j in 0..=q {
-                let at = i * width + j;
-                let line = |step: usize, left: usize, bend: &mut Bend| {
-                    if left >= 1 {
-                        bend.first = bend.first.max(points[at].distance_squared(points[at + step]));
-                        let ratio = weight(at) / weight(at + step);
-                        bend.weights = bend.weights.max(ratio).max(ratio.recip());
-                    }
-                    if left >= 2 {
-                        let second = points[at + 2 * step] - 2.0 * points[at + step] + points[at];
-                        bend.second = bend.second.max(second.length_squared());
-                    }
-                };
-                line(width, p - i, &mut u);
-                line(1, q - j, &mut v);
-            }
+        self.write_points(points);
+        let [mut bend_u, mut bend_v] = bends(points, self.degree);
+        if let Some(direction) = self.uneven() {
+            *(if direction == Direction::U { &mut bend_u } else { &mut bend_v }) += 1.0;
         }
-        let (length_u, length_v) = (u.first.sqrt() * p as f64, v.first.sqrt() * q as f64);
-        // a direction that is a thousand times shorter than the other cannot bend the piece
-        let shortest = 1e-3 * length_u.max(length_v);
-        let mut bend_u = if length_u < shortest { 0.0 } else { u.measure(p) };
-        let mut bend_v = if length_v < shortest { 0.0 } else { v.measure(q) };
-        let (lightest, heaviest) = self.net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
-        if heaviest > 16.0 * lightest {
-            *(if u.weights >= v.weights { &mut bend_u } else { &mut bend_v }) += 1.0;
-        }
-        let threshold = if q == 0 { 0.7 } else { 0.8 * self.sine_of_skew() };
+        let corner = |i: usize, j: usize| points[i * (q + 1) + j];
+        let threshold =
+            if q == 0 { 0.7 } else { 0.8 * sine_of_skew([corner(0, 0), corner(p, 0), corner(0, q), corner(p, q)]) };
         let largest = bend_u.max(bend_v);
         (largest > threshold).then_some(if bend_u >= bend_v { Direction::U } else { Direction::V })
     }
 
-    /// Sine of the angle between the mean u and the mean v direction, at least 0.14.
-    fn sine_of_skew(&self) -> f64 {
+    /// The direction in which neighbouring weights differ most, where they are more than 16 apart in all.
+    fn uneven(&self) -> Option<Direction> {
         let (p, q) = self.degree;
-        let corner = |i: usize, j: usize| cartesian(self.net[i * (q + 1) + j]);
-        let (a, b, c, d) = (corner(0, 0), corner(p, 0), corner(0, q), corner(p, q));
-        let (du, dv) = (b - a + d - c, c - a + d - b);
-        let lengths = du.length_squared() * dv.length_squared();
-        if lengths > 0.0 { (1.0 - du.dot(dv).powi(2) / lengths).max(0.02).sqrt() } else { 1.0 }
+        let (lightest, heaviest) = self.net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+        if !self.rational || heaviest <= 16.0 * lightest {
+            return None;
+        }
+        let weight = |i: usize, j: usize| self.net[i * (q + 1) + j].w;
+        let ratio = |a: f64, b: f64| (a / b).max(b / a);
+        let (mut u, mut v) = (0.0_f64, 0.0_f64);
+        for i in 0..=p {
+            for j in 0..=q {
+                if i < p {
+                    u = u.max(ratio(weight(i, j), weight(i + 1, j)));
+                }
+                if j < q {
+                    v = v.max(ratio(weight(i, j), weight(i, j + 1)));
+                }
+            }
+        }
+        Some(if u >= v { Direction::U } else { Direction::V })
     }
 }
 
-/// How much a net bends in one direction: squares of its largest first and second differences, and the largest ratio of
-/// neighbouring weights.
+/// How much control points in row order depart from an affine map in u and in v: `(n - 1) max|second difference| / max|first difference|`.
+fn bends(points: &[DVec3], (p, q): (usize, usize)) -> [f64; 2] {
+    let width = q + 1;
+    let (mut u, mut v) = (Bend::default(), Bend::default());
+    for i in 0..=p {
+        let row = &points[i * width..(i + 1) * width];
+        v.add(row, &row[1..], row.get(2..).unwrap_or_default());
+        if i < p {
+            let below = |k: usize| points.get((i + k) * width..(i + k + 1) * width).unwrap_or_default();
+            u.add(row, below(1), below(2));
+        }
+    }
+    let (length_u, length_v) = (u.first.sqrt() * p as f64, v.first.sqrt() * q as f64);
+    // a direction that is a thousand times shorter than the other cannot bend the piece
+    let shortest = 1e-3 * length_u.max(length_v);
+    [if length_u < shortest { 0.0 } else { u.measure(p) }, if length_v < shortest { 0.0 } else { v.measure(q) }]
+}
+
+/// Sine of the angle between the mean u and the mean v direction of a net with these corners, at least 0.14.
+fn sine_of_skew([a, b, c, d]: [DVec3; 4]) -> f64 {
+    let (du, dv) = (b - a + d - c, c - a + d - b);
+    let lengths = du.length_squared() * dv.length_squared();
+    if lengths > 0.0 { (1.0 - du.dot(dv).powi(2) / lengths).max(0.02).sqrt() } else { 1.0 }
+}
+
+/// How much a net bends in one direction: squares of its largest first and second differences.
 #[derive(Default)]
 struct Bend {
     first: f64,
     second: f64,
-    weights: f64,
 }
 
 impl Bend {
+    /// Takes points, the ones after each and the ones after these, where there are any.
+    #[inline(always)]
+    fn add(&mut self, here: &[DVec3], next: &[DVec3], second: &[DVec3]) {
+        let greater = |a: f64, b: f64| if a > b { a } else { b };
+        for (a, b) in here.iter().zip(next) {
+            self.first = greater((*b - *a).length_squared(), self.first);
+        }
+        for ((a, b), c) in here.iter().zip(next).zip(second) {
+            self.second = greater((*c - 2.0 * *b + *a).length_squared(), self.second);
+        }
+    }
+
     fn measure(&self, degree: usize) -> f64 {
         if degree < 2 || self.first == 0.0 { 0.0 } else { (degree - 1) as f64 * (self.second / self.first).sqrt() }
     }
@@ -186,7 +226,6 @@ mod tests {
     use super::super::double_double::{DoubleDouble, Random};
     use super::super::frame::Frame;
     use super::*;
-    use glam::DVec3;
     use perpend_kernel::NurbsCurve;
 
     type Exact = [DoubleDouble; 4];
@@ -240,7 +279,7 @@ mod tests {
             let (net, _) = frame.net(&definition);
             let reach = net.iter().fold(0.0_f64, |r, h| r.max(cartesian(*h).length()));
             let reserve = Frame::reserve((degree, 0), reach);
-            for (piece, span) in Piece::all(&definition, &net).iter().zip(curve.knots().spans()) {
+            for (piece, span) in Piece::all(&definition, &net, true).iter().zip(curve.knots().spans()) {
                 for (m, point) in piece.net.iter().enumerate() {
                     let exact = DVec3::from_array(exact_point(&curve, &frame, span.index, m));
                     worst = worst.max(cartesian(*point).distance(exact) / reserve);

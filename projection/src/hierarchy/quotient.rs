@@ -10,9 +10,12 @@
 //! Numerators and denominators are Bernstein polynomials; raised to one degree, the quotient is a convex combination of the quotients of their
 //! coefficients, as all weights are positive. So it lies in the box around these.
 //!
+//! All coefficients are kept times their binomials: products are then convolutions, `n C(n - 1, i) (c[i + 1] - c[i]) = (i + 1) c~[i + 1] - (n - i) c~[i]`
+//! gives derivatives, and the binomials fall out of the quotients.
+//!
 //! # Rounding
 //!
-//! A coefficient of a product is a convex combination of at most `N = (p + 1)(q + 1)` products of coefficients: with the binomials it errs by at
+//! A coefficient of a product is, but for its binomials, a convex combination of at most `N = (p + 1)(q + 1)` products of coefficients: it errs by at
 //! most `(N + 10) u` of the largest of these. With `|A| <= r W`, `w <= W`, a derivative being at most `2 n` times its polynomial and `n` the greater
 //! degree: `|V| <= 4 n r W²` errs by `6 n (N + 10) u r W²`, the numerators of the second derivatives are at most `24 n² r W³` and err by
 //! `100 n² (N + 10) u r W³`. Divided by the least denominator, with `rho` the ratio of the weights, [`margin`] is twice that.
@@ -38,7 +41,7 @@ impl Boxes {
     /// Around a piece whose control points lie within `radius` of the origin and whose weights are at most `heaviest` and at least `lightest`.
     pub(super) fn around(leaf: Shape<'_>, axes: &DMat3, radius: f64, (lightest, heaviest): (f64, f64)) -> Self {
         let turned = |h: &DVec4| (*axes * h.truncate()).extend(h.w);
-        let net = Polynomial { degree: leaf.degree, coefficients: leaf.net.iter().map(turned).collect() };
+        let net = Polynomial::scaled(leaf.degree, leaf.net.iter().map(turned));
         let [net_s, net_t] = [net.derivative_s(), net.derivative_t()];
         let w2 = net.times(&net);
         let w3 = w2.times(&net);
@@ -68,7 +71,7 @@ fn wider(bounds: Aabb, margin: f64) -> Aabb {
     Aabb { min: bounds.min - DVec3::splat(margin), max: bounds.max + DVec3::splat(margin) }
 }
 
-/// A polynomial in Bernstein form: a vector and, as fourth coordinate, a weight.
+/// A polynomial in Bernstein form, a vector and, as fourth coordinate, a weight: every coefficient times its binomials.
 struct Polynomial {
     degree: (usize, usize),
     coefficients: Vec<DVec4>,
@@ -79,32 +82,31 @@ impl Polynomial {
         Self { degree, coefficients: vec![DVec4::ZERO; (degree.0 + 1) * (degree.1 + 1)] }
     }
 
+    /// From coefficients without their binomials, in row order.
+    fn scaled(degree: (usize, usize), coefficients: impl Iterator<Item = DVec4>) -> Self {
+        let width = degree.1 + 1;
+        let scale = |(at, c)| binomial(degree.0, at / width) * binomial(degree.1, at % width) * c;
+        Self { degree, coefficients: coefficients.enumerate().map(scale).collect() }
+    }
+
     fn at(&self, i: usize, j: usize) -> DVec4 {
         self.coefficients[i * (self.degree.1 + 1) + j]
     }
 
-    /// The sum over all pairs of coefficients, of `product` of them; each with its share of the product's coefficient.
-    fn product(&self, other: &Self, product: impl Fn(DVec4, DVec4) -> DVec4) -> Self {
-        let ((p, q), (m, n)) = (self.degree, other.degree);
-        let mut result = Self::zero((p + m, q + n));
-        for i in 0..=p {
-            for k in 0..=m {
-                let down = binomial(p, i) * binomial(m, k) / binomial(p + m, i + k);
-                for j in 0..=q {
-                    for l in 0..=n {
-                        let share = down * binomial(q, j) * binomial(n, l) / binomial(q + n, j + l);
-                        let at = (i + k) * (q + n + 1) + j + l;
-                        result.coefficients[at] += share * product(self.at(i, j), other.at(k, l));
-                    }
+    /// All four coordinates times the other's weight.
+    fn times(&self, other: &Self) -> Self {
+        let degree = (self.degree.0 + other.degree.0, self.degree.1 + other.degree.1);
+        let (width, others, product) = (self.degree.1 + 1, other.degree.1 + 1, degree.1 + 1);
+        let mut result = Self::zero(degree);
+        for (i, row) in self.coefficients.chunks_exact(width).enumerate() {
+            for (k, weights) in other.coefficients.chunks_exact(others).enumerate() {
+                let sums = &mut result.coefficients[(i + k) * product..][..product];
+                for (l, weight) in weights.iter().enumerate() {
+                    sums[l..].iter_mut().zip(row).for_each(|(sum, a)| *sum += weight.w * *a);
                 }
             }
         }
         result
-    }
-
-    /// All four coordinates times the other's weight.
-    fn times(&self, other: &Self) -> Self {
-        self.product(other, |a, b| a * b.w)
     }
 
     fn minus(mut self, other: &Self, factor: f64) -> Self {
@@ -117,7 +119,8 @@ impl Polynomial {
         let mut result = Self::zero((p.saturating_sub(1), q));
         for i in 0..p {
             for j in 0..=q {
-                result.coefficients[i * (q + 1) + j] = p as f64 * (self.at(i + 1, j) - self.at(i, j));
+                result.coefficients[i * (q + 1) + j] =
+                    (i + 1) as f64 * self.at(i + 1, j) - (p - i) as f64 * self.at(i, j);
             }
         }
         result
@@ -128,7 +131,7 @@ impl Polynomial {
         let mut result = Self::zero((p, q.saturating_sub(1)));
         for i in 0..=p {
             for j in 0..q {
-                result.coefficients[i * q.max(1) + j] = q as f64 * (self.at(i, j + 1) - self.at(i, j));
+                result.coefficients[i * q + j] = (j + 1) as f64 * self.at(i, j + 1) - (q - j) as f64 * self.at(i, j);
             }
         }
         result
@@ -147,7 +150,7 @@ impl Polynomial {
     /// The same polynomial in a form of a higher degree.
     fn raised(&self, degree: (usize, usize)) -> Self {
         let by = (degree.0 - self.degree.0, degree.1 - self.degree.1);
-        let one = Self { degree: by, coefficients: vec![DVec4::W; (by.0 + 1) * (by.1 + 1)] };
+        let one = Self::scaled(by, std::iter::repeat_n(DVec4::W, (by.0 + 1) * (by.1 + 1)));
         self.times(&one)
     }
 

@@ -127,7 +127,7 @@ impl Hierarchy {
         let threshold = if leaf.rational { 0.0 } else { squared(reach) };
         let (layout, level) = (leaf.shape().layout(), leaf.level);
         let mut net = Vec::new();
-        form(level, leaf.shape(), &leaf.opened().tables, x, reach, &mut net);
+        form(level, leaf.shape(), leaf.tables(), x, reach, &mut net);
         let rounding = rounding_bound(leaf.degree, x.length(), leaf.radius, reach, leaf.heaviest);
         let mut cells = vec![Cell { net, layout, domain: Domain::WHOLE, rounding }];
         let mut matrices = Vec::new();

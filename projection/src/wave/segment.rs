@@ -1,7 +1,7 @@
 //! The boxes of sub-curves and sub-patches.
 
 use glam::DVec4;
-use perpend_kernel::bezier::extraction;
+use perpend_kernel::bezier::{Extraction, extraction};
 use perpend_kernel::{Aabb, Direction, KnotVector, NurbsCurve, NurbsSurface, Span, cartesian};
 
 /// A box is widened by this share of the largest |coordinate|: what rounding leaves between a point and the control points around it.
@@ -13,7 +13,7 @@ struct Part {
     /// The first control point that it needs.
     first: usize,
     /// Row `m` gives Bézier point `m`: shares of the control points, none negative.
-    rows: Vec<Vec<f64>>,
+    matrix: Extraction,
 }
 
 /// The parts of the segments between neighbouring parameters: cut at every parameter and at every knot.
@@ -28,7 +28,7 @@ fn parts(knots: &KnotVector, parameters: &[f64]) -> impl Iterator<Item = Part> {
         at.dedup();
         let cut = move |pair: &[f64]| {
             let span = Span { index: knots.find_span(pair[0]), start: pair[0], end: pair[1] };
-            Part { segment, first: span.index - knots.degree(), rows: extraction(knots, span) }
+            Part { segment, first: span.index - knots.degree(), matrix: extraction(knots, span) }
         };
         at.windows(2).map(cut).collect::<Vec<_>>()
     })
@@ -39,7 +39,7 @@ pub(super) fn curve_boxes(curve: &NurbsCurve, parameters: &[f64]) -> Vec<Aabb> {
     let net = curve.homogeneous_points();
     let mut boxes = vec![Aabb::EMPTY; parameters.len() - 1];
     for part in parts(curve.knots(), parameters) {
-        let points = part.rows.iter().map(|row| cartesian(combine(row, |k| net[part.first + k])));
+        let points = part.matrix.rows().map(|row| cartesian(combine(row, |k| net[part.first + k])));
         boxes[part.segment] = boxes[part.segment].join(Aabb::around(points));
     }
     widened(boxes)
@@ -53,13 +53,13 @@ pub(super) fn surface_boxes(surface: &NurbsSurface, u: &[f64], v: &[f64]) -> Vec
     let mut strip: Vec<DVec4> = Vec::new();
     for across in parts(surface.knots(Direction::U), u) {
         strip.clear();
-        for row in &across.rows {
+        for row in across.matrix.rows() {
             strip.extend((0..columns).map(|j| combine(row, |i| net[(across.first + i) * columns + j])));
         }
         for part in &along {
             let bounds = &mut boxes[across.segment * (v.len() - 1) + part.segment];
             for line in strip.chunks(columns) {
-                let points = part.rows.iter().map(|row| cartesian(combine(row, |j| line[part.first + j])));
+                let points = part.matrix.rows().map(|row| cartesian(combine(row, |j| line[part.first + j])));
                 *bounds = bounds.join(Aabb::around(points));
             }
         }
