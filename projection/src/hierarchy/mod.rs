@@ -147,10 +147,8 @@ impl Hierarchy {
             pieces = pieces.into_iter().flat_map(|piece| piece.cut(*cusp)).collect();
         }
         let mut points = Vec::new();
-        let leaves: Vec<Leaf> = split_bent(pieces, &mut points)
-            .into_iter()
-            .map(|piece| Leaf::new(piece, level, &mut points))
-            .collect();
+        let leaves: Vec<Leaf> =
+            split_bent(pieces, &mut points).into_iter().map(|piece| Leaf::new(piece, level, &mut points)).collect();
         let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
         let whole = |range: fn(&Leaf) -> (f64, f64)| {
             leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))
@@ -493,8 +491,7 @@ mod tests {
             let points = (0..n).map(|_| random.point()).collect();
             let curve = NurbsCurve::new(degree, knots(degree, n, &mut random), points, None).expect("valid");
             let hierarchy = Hierarchy::new(&curve.into(), &[0.123, 0.456]);
-            let leaves =
-                hierarchy.leaves.iter().flat_map(|leaf| [leaf.net.clone(), leaf.refine().1[0].net.clone()]);
+            let leaves = hierarchy.leaves.iter().flat_map(|leaf| [leaf.net.clone(), leaf.refine().1[0].net.clone()]);
             assert!(leaves.flatten().all(|h| h.w == 1.0));
             assert!(hierarchy.leaves.iter().all(|leaf| (leaf.lightest, leaf.heaviest) == (1.0, 1.0)));
         }

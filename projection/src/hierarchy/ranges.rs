@@ -162,11 +162,7 @@ impl Ranges {
             radius,
             weights: (weights.1 / weights.0).powi(2),
         };
-        if leaf.rational {
-            empty.rational(leaf, axes, radius, weights)
-        } else {
-            empty.polynomial(leaf, axes)
-        }
+        if leaf.rational { empty.rational(leaf, axes, radius, weights) } else { empty.polynomial(leaf, axes) }
     }
 
     /// The query at `x` from the leaf's origin and at `y` along its axes.
@@ -423,7 +419,8 @@ mod tests {
                 for _ in 0..4 {
                     let (s, t) = parameters(&leaf, &mut random);
                     let at = |s: f64, t: f64| squared_distance(&leaf.net, degree, x, (s, t));
-                    let (here, [first, last], [low, high]) = (at(s, t), [at(0.0, t), at(1.0, t)], [at(s, 0.0), at(s, 1.0)]);
+                    let (here, [first, last], [low, high]) =
+                        (at(s, t), [at(0.0, t), at(1.0, t)], [at(s, 0.0), at(s, 1.0)]);
                     let secant = |from: DoubleDouble, step: f64, slope: DoubleDouble| {
                         if step > 0.0 { (here[0] - from) / step } else { slope }
                     };
