@@ -90,13 +90,18 @@ impl BoxTree {
     /// The tree over `boxes`; item `i` is the one with box `i`.
     #[must_use]
     pub fn new(boxes: &[Aabb]) -> Self {
+        Self::with_level(boxes, Level::new())
+    }
+
+    /// The same for a processor that can do what `level` says.
+    pub(crate) fn with_level(boxes: &[Aabb], level: Level) -> Self {
         let mut items: Vec<Item> =
             boxes.iter().enumerate().map(|(at, bounds)| Item { middle: bounds.centre(), at: at as u32 }).collect();
         let mut nodes = Vec::with_capacity(boxes.len() / 2 + 1);
         if !boxes.is_empty() {
             build(&mut items, boxes, &mut nodes);
         }
-        Self { nodes, level: Level::new() }
+        Self { nodes, level }
     }
 
     /// Adds to `found` every item whose box is nearer to `p` than the square root of `limit_squared`; returns how many boxes

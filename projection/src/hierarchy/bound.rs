@@ -58,11 +58,11 @@ pub(super) fn nearest_from(leaf: &Leaf, x: DVec3, found: &Found, domain: Domain,
 /// Error of `|S - x|²` evaluated at a point at distance `d`.
 ///
 /// With `c = 3 (p + q) + 8`, `A` errs by at most `c u r W` and `w` by `c u W` (as in [`value_error`]), so `S = A / w` by `e = (2 c rho + 2) u r`, `rho` being the ratio
-/// of the weights. Hence `2 d e + e²`, and `8 u d²` for the difference and its square.
+/// of the weights. Hence `2 d e + e²`, `8 u d²` for the difference and its square, and `4 u d²` for what is added to it and for the `tau²` that it is compared with.
 #[inline(always)]
 pub(super) fn square_error(leaf: &Leaf, d: f64) -> f64 {
     let e = point_error(leaf);
-    2.0 * d * e + e * e + 8.0 * ROUNDING * d * d
+    2.0 * d * e + e * e + 12.0 * ROUNDING * d * d
 }
 
 /// The error `e` of an evaluated point of the leaf.
@@ -120,26 +120,10 @@ fn gradient_error(leaf: &Leaf, d: f64, tau: f64, direction: DVec3, weight: f64, 
 
 #[cfg(test)]
 mod tests {
-    use super::super::double_double::{DoubleDouble, Random};
+    use super::super::double_double::{DoubleDouble, Random, basis, squared_distance};
     use super::super::piece::Piece;
     use super::*;
     use fearless_simd::Level;
-    use perpend_kernel::binomial;
-
-    /// Bernstein polynomials and their first derivatives in double-double.
-    fn basis(n: usize, x: f64) -> Vec<[DoubleDouble; 2]> {
-        let number = DoubleDouble::from;
-        let power = |base: DoubleDouble, k: usize| (0..k).fold(number(1.0), |product, _| product * base);
-        let (x, y) = (number(x), number(1.0) - number(x));
-        let value = |n: usize, i: usize| number(binomial(n, i)) * power(x, i) * power(y, n - i);
-        (0..=n)
-            .map(|i| {
-                let above = if i >= 1 { value(n - 1, i - 1) } else { number(0.0) };
-                let below = if n >= 1 && i < n { value(n - 1, i) } else { number(0.0) };
-                [value(n, i), number(n as f64) * (above - below)]
-            })
-            .collect()
-    }
 
     /// `G` and its two derivatives at `(s, t)`, in double-double from the leaf's net.
     fn exact(leaf: &Leaf, x: DVec3, tau: f64, s: f64, t: f64) -> [f64; 3] {
@@ -167,31 +151,8 @@ mod tests {
         [value, ds, dt]
     }
 
-    /// The squared distance and its derivatives from the exact form of `tau = 0`, `D w²`, and the exact weight.
-    fn exact_square(leaf: &Leaf, x: DVec3, s: f64, t: f64) -> [f64; 3] {
-        let (p, q) = leaf.degree;
-        let (bs, bt) = (basis(p, s), basis(q, t));
-        let number = DoubleDouble::from;
-        let mut jets = [[number(0.0); 4]; 3];
-        for (e, h) in leaf.net.iter().enumerate() {
-            let (i, j) = (e / (q + 1), e % (q + 1));
-            let shares = [bs[i][0] * bt[j][0], bs[i][1] * bt[j][0], bs[i][0] * bt[j][1]];
-            for (jet, share) in jets.iter_mut().zip(shares) {
-                (0..4).for_each(|k| jet[k] = jet[k] + share * number(h[k]));
-            }
-        }
-        let w = jets[0][3];
-        let offset = [0, 1, 2].map(|k| jets[0][k] / w - number(x[k]));
-        let dot = |a: &[DoubleDouble; 3], b: &[DoubleDouble; 3]| (0..3).fold(number(0.0), |sum, k| sum + a[k] * b[k]);
-        let slope = |jet: &[DoubleDouble; 4]| {
-            let derivative = [0, 1, 2].map(|k| (jet[k] - jets[0][k] / w * jet[3]) / w);
-            (number(2.0) * dot(&offset, &derivative)).to_f64()
-        };
-        [dot(&offset, &offset).to_f64(), slope(&jets[1]), slope(&jets[2])]
-    }
-
     /// The value that the convexity test starts from, and its gradient, each within its own bound; near the surface too,
-    /// where the gradient's error does not fall with the distance.
+    /// where the gradient's error does not fall with the distance. No bound is idle: a hundredth of each is exceeded.
     #[test]
     fn evaluated_values_and_gradients_err_within_their_bounds() {
         let mut random = Random(9);
@@ -218,13 +179,14 @@ mod tests {
             let w = jet.p.w;
             let value = (d - tau) * (d + tau) * w * w;
             worst_value = worst_value.max((value - exact[0]).abs() / value_error(&leaf, d));
-            let square = exact_square(&leaf, x, s, t);
-            worst_square = worst_square.max((d * d - square[0]).abs() / square_error(&leaf, d));
+            let square = squared_distance(&leaf.net, degree, x, (s, t));
+            let off = |value: f64, exact: DoubleDouble| (DoubleDouble::from(value) - exact).to_f64().abs();
+            worst_square = worst_square.max(off(d * d, square[0]) / square_error(&leaf, d));
             for (derivative, n, exact) in [(jet.ps, degree.0, square[1]), (jet.pt, degree.1, square[2])] {
                 let (offset, derivative) = (jet.point() - x, derivative.truncate());
                 let error = slope_error(&leaf, d, derivative, n);
                 if n > 0 {
-                    worst_slope = worst_slope.max((2.0 * offset.dot(derivative) - exact).abs() / error);
+                    worst_slope = worst_slope.max(off(2.0 * offset.dot(derivative), exact) / error);
                 }
             }
             let derivatives = [(jet.ps, degree.0, exact[1]), (jet.pt, degree.1, exact[2])];
@@ -236,7 +198,7 @@ mod tests {
         }
         assert!(worst_value < 1.0 && worst_gradient < 1.0, "{worst_value} {worst_gradient}");
         assert!(worst_square < 1.0 && worst_slope < 1.0, "{worst_square} {worst_slope}");
-        assert!(worst_square > 1e-4 && worst_slope > 1e-4, "idle bounds: {worst_square} {worst_slope}");
-        assert!(worst_value > 1e-4 && worst_gradient > 1e-4, "idle bounds: {worst_value} {worst_gradient}");
+        assert!(worst_square > 1e-2 && worst_slope > 1e-2, "idle bounds: {worst_square} {worst_slope}");
+        assert!(worst_value > 1e-2 && worst_gradient > 1e-2, "idle bounds: {worst_value} {worst_gradient}");
     }
 }

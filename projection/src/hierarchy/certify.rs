@@ -318,13 +318,17 @@ impl Proof<'_> {
         let (upper, goal, formed) = (state.best.distance, state.goal, self.formed);
         let mut closed = false;
         let found = newton::search(leaf, self.x, search, &mut state.done, &mut |found| {
-            let tau = goal.tau(found.distance.min(upper));
+            let best = found.distance.min(upper);
+            let (tau, reach) = (goal.tau(best), goal.reach(best));
             if leaf.rational && tau < formed - 0.5 * goal.gap {
                 return false; // the form will be made again
             }
             let tau = if leaf.rational { formed } else { tau };
-            closed = self.bound_from(found, cell, curvature, tau) > 0.0;
-            closed
+            let least = self.bound_from(found, cell, curvature, tau);
+            closed |= least > 0.0;
+            // what is proven no nearer may still hold a foot that is as near
+            let beyond = (reach - tau) * (reach + tau) * leaf.heaviest * leaf.heaviest;
+            closed && (found.distance <= reach || least >= beyond)
         });
         self.found = found.next;
         self.part.offer(&found, state);

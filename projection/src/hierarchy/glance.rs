@@ -53,9 +53,13 @@ fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut Stat
         &mut state.done,
         #[inline(always)]
         |found| {
-            let tau = goal.tau(found.distance.min(upper));
-            closed = curvature.is_some_and(|curvature| nearest_from(leaf, x, found, domain, curvature) >= tau * tau);
-            closed
+            let Some(curvature) = curvature else { return false };
+            let best = found.distance.min(upper);
+            let (tau, reach) = (goal.tau(best), goal.reach(best));
+            let least = nearest_from(leaf, x, found, domain, curvature);
+            closed |= least >= tau * tau;
+            // what is proven no nearer may still hold a foot that is as near
+            closed && (found.distance <= reach || least >= reach * reach)
         },
     );
     part.offer(&found, state);

@@ -134,6 +134,11 @@ impl Solver for Hierarchy {
 impl Hierarchy {
     /// Prepares a definition; `cusps` are parameters of a curve at which its pieces are split too.
     pub(crate) fn new(definition: &Definition, cusps: &[f64]) -> Self {
+        Self::with_level(definition, cusps, Level::new())
+    }
+
+    /// The same for a processor that can do what `level` says: that changes times, and no bit.
+    fn with_level(definition: &Definition, cusps: &[f64], level: Level) -> Self {
         let frame = Frame::of(definition);
         let (net, rational) = frame.net(definition);
         let reach = net.iter().fold(0.0_f64, |r, h| r.max(cartesian(*h).length()));
@@ -145,7 +150,6 @@ impl Hierarchy {
         for cusp in cusps {
             pieces = pieces.into_iter().flat_map(|piece| piece.cut(*cusp)).collect();
         }
-        let level = Level::new();
         let mut points = Vec::new();
         let leaves: Vec<Leaf> =
             split_bent(pieces, &mut points).into_iter().map(|piece| Leaf::new(piece, level, &mut points)).collect();
@@ -156,7 +160,7 @@ impl Hierarchy {
         let domain = [whole(|leaf| leaf.u), whole(|leaf| leaf.v)];
         Self {
             frame,
-            tree: BoxTree::new(&boxes),
+            tree: BoxTree::with_level(&boxes, level),
             parameters: OnceLock::new(),
             leaves,
             domain,
@@ -406,6 +410,141 @@ mod tests {
                 }
             }
         }
+    }
+
+    /// A full circle of radius 1 about the z axis, by quadratic arcs: points and weights.
+    fn circle(z: f64) -> (Vec<DVec3>, Vec<f64>) {
+        let corners = [(1, 0), (1, 1), (0, 1), (-1, 1), (-1, 0), (-1, -1), (0, -1), (1, -1), (1, 0)];
+        let points = corners.map(|(x, y)| DVec3::new(f64::from(x), f64::from(y), z));
+        let weights = [1.0, 0.0].repeat(5)[..9].iter().map(|w| if *w > 0.0 { 1.0 } else { 0.5_f64.sqrt() }).collect();
+        (points.to_vec(), weights)
+    }
+
+    /// What a processor can do changes times, and no bit: feet near and far, on the entity, and where a whole circle is as near.
+    #[test]
+    fn the_level_of_the_processor_changes_no_bit() {
+        const DEGREES: [usize; 7] = [1, 2, 3, 4, 5, 7, 9];
+        let mut random = Random(17);
+        let mut definitions = Vec::new();
+        let arcs = [0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 3.0, 3.0, 4.0, 4.0, 4.0].to_vec();
+        let (low, weights) = circle(-1.0);
+        let rows = low.iter().map(|p| vec![*p, *p + 2.0 * DVec3::Z]).collect();
+        let row_weights = weights.iter().map(|w| vec![*w; 2]).collect();
+        let knots_v = vec![0.0, 0.0, 1.0, 1.0];
+        let cylinder = NurbsSurface::new((2, 1), (arcs.clone(), knots_v), rows, Some(row_weights)).expect("valid");
+        definitions.push(Definition::from(cylinder));
+        definitions.push(NurbsCurve::new(2, arcs, circle(0.0).0, Some(weights)).expect("valid").into());
+        for rational in [false, true] {
+            let weight = |random: &mut Random| 10.0_f64.powf(random.between(-0.7, 0.7));
+            for p in DEGREES {
+                let n = p + 3;
+                let points = (0..n).map(|_| random.point()).collect();
+                let weights = rational.then(|| (0..n).map(|_| weight(&mut random)).collect());
+                let knots_u = knots(p, n, &mut random);
+                definitions.push(NurbsCurve::new(p, knots_u, points, weights).expect("valid").into());
+                for q in DEGREES {
+                    let (n, m) = (p + 2, q + 2);
+                    let bend = 0.6 * random.between(0.0, 1.0);
+                    let mut at = |i: usize, j: usize| {
+                        DVec3::new(i as f64 / n as f64, j as f64 / m as f64, 0.0) + bend * random.point()
+                    };
+                    let points = (0..n).map(|i| (0..m).map(|j| at(i, j)).collect()).collect();
+                    let weights =
+                        rational.then(|| (0..n).map(|_| (0..m).map(|_| weight(&mut random)).collect()).collect());
+                    let knots = (knots(p, n, &mut random), knots(q, m, &mut random));
+                    definitions.push(NurbsSurface::new((p, q), knots, points, weights).expect("valid").into());
+                }
+            }
+        }
+        let numbers = |s: &LocalSolution| {
+            let [n, o] = [s.normal, s.offset];
+            [s.u, s.v, s.distance, s.lower_bound, n.x, n.y, n.z, o.x, o.y, o.z].map(f64::to_bits)
+        };
+        let mut connected = 0;
+        for definition in definitions {
+            let hierarchies = [Level::baseline(), Level::new()].map(|l| Hierarchy::with_level(&definition, &[], l));
+            let Frame { origin, size, .. } = hierarchies[0].frame;
+            let mut queries = vec![origin, origin + 0.25 * DVec3::Z, definition.control_points()[0]];
+            for away in [0.0, 1e-9, 1e-3, 0.1, 0.5, 3.0, 1e3, 1e9] {
+                let (u, v) = (random.between(0.0, 1.0), random.between(0.0, 1.0));
+                let on = match &definition {
+                    Definition::NurbsCurve(curve) => curve.point(u),
+                    Definition::NurbsSurface(surface) => surface.point(u, v),
+                };
+                queries.push(on + away * size * random.point());
+            }
+            for p in queries {
+                let query = Query::new(p, QueryOptions::default()).expect("finite");
+                let [plain, wide] = hierarchies
+                    .each_ref()
+                    .map(|h| h.project(&query, None, &mut Workspace::default()).expect("no limit"));
+                assert_eq!(numbers(&plain), numbers(&wide), "{p} of {definition:?}");
+                assert_eq!((plain.tie, plain.done), (wide.tie, wide.done), "{p} of {definition:?}");
+                connected += usize::from(plain.tie == Tie::Connected);
+            }
+        }
+        assert!(connected >= 3, "the axis and the centre have whole circles: {connected}");
+    }
+
+    /// The form of a polynomial leaf takes its weights for 1: knots leave them 1 but for rounding, which is then no part of the form's bound.
+    #[test]
+    fn the_weights_of_a_polynomial_leaf_are_one() {
+        let mut random = Random(19);
+        for degree in [1, 2, 3, 9] {
+            let n = degree + 9;
+            let points = (0..n).map(|_| random.point()).collect();
+            let curve = NurbsCurve::new(degree, knots(degree, n, &mut random), points, None).expect("valid");
+            let hierarchy = Hierarchy::new(&curve.into(), &[0.123, 0.456]);
+            let leaves = hierarchy.leaves.iter().flat_map(|leaf| [leaf.net.clone(), leaf.refine().1[0].net.clone()]);
+            assert!(leaves.flatten().all(|h| h.w == 1.0));
+            assert!(hierarchy.leaves.iter().all(|leaf| (leaf.lightest, leaf.heaviest) == (1.0, 1.0)));
+        }
+    }
+
+    /// Of a piece and its mirror image both feet are met, however soon the proof of the second ends.
+    #[test]
+    fn mirrored_feet_are_met() {
+        let mut random = Random(23);
+        let (mut apart, mut missed) = (0, Vec::new());
+        for round in 0..300 {
+            // strips along x: a piece, a straight way across the plane z = 0 far off, and the piece's mirror image
+            let (degree, columns) = (2 + round % 3, [1, 3][round / 3 % 2]);
+            let bend = 10.0_f64.powf(random.between(-3.0, -0.5));
+            let mut strip = |column: usize| -> Vec<DVec3> {
+                let at = |k: usize| DVec3::new(6.0 * k as f64 / degree as f64, column as f64, 1.0);
+                let half: Vec<DVec3> = (0..=degree).map(|k| at(k) + bend * random.point()).collect();
+                let end = half[degree];
+                let across = (1..degree).map(|k| end - DVec3::Z * (2.0 * end.z * k as f64 / degree as f64));
+                let mirrored = half.iter().rev().map(|p| DVec3::new(p.x, p.y, -p.z));
+                half.iter().copied().chain(across).chain(mirrored).collect()
+            };
+            let strips: Vec<Vec<DVec3>> = (0..columns).map(|column| strip(column)).collect();
+            let count = strips[0].len();
+            // the weights rise to the middle and fall again
+            let weight = |k: usize| 1.0 + 0.2 * (round % 2 * k.min(count - 1 - k).min(degree)) as f64;
+            let ends = |x: f64, times: usize| vec![x; times];
+            let knots = [ends(0.0, degree + 1), ends(1.0, degree), ends(2.0, degree), ends(3.0, degree + 1)].concat();
+            let definition: Definition = if columns == 1 {
+                let weights = (0..count).map(weight).collect();
+                NurbsCurve::new(degree, knots, strips[0].clone(), Some(weights)).expect("valid").into()
+            } else {
+                let rows = (0..count).map(|k| strips.iter().map(|strip| strip[k]).collect()).collect();
+                let weights = (0..count).map(|k| vec![weight(k); columns]).collect();
+                let knots = (knots, [ends(0.0, columns), ends(1.0, columns)].concat());
+                NurbsSurface::new((degree, columns - 1), knots, rows, Some(weights)).expect("valid").into()
+            };
+            let hierarchy = Hierarchy::new(&definition, &[]);
+            for _ in 0..20 {
+                let p = DVec3::new(random.between(0.0, 4.0), random.between(0.0, columns as f64 - 1.0), 0.0);
+                let query = Query::new(p, QueryOptions::default()).expect("finite");
+                let solution = hierarchy.project(&query, None, &mut Workspace::default()).expect("no limit");
+                apart += usize::from(solution.tie == Tie::Apart);
+                if solution.tie != Tie::Apart {
+                    missed.push((definition.clone(), p, solution));
+                }
+            }
+        }
+        assert!(missed.is_empty(), "{apart} were met, {} not: {:?}", missed.len(), missed.first());
     }
 
     /// A piece that is closed without an evaluation, or that no proof needs, may still hold a foot as near.

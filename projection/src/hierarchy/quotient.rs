@@ -40,7 +40,6 @@ pub(super) struct Boxes {
 impl Boxes {
     /// Around a piece whose control points lie within `radius` of the origin and whose weights are at most `heaviest` and at least `lightest`.
     pub(super) fn around(leaf: Shape<'_>, axes: &DMat3, radius: f64, (lightest, heaviest): (f64, f64)) -> Self {
-        let (p, q) = leaf.degree;
         let turned = |h: &DVec4| (*axes * h.truncate()).extend(h.w);
         let net = Polynomial::scaled(leaf.degree, leaf.net.iter().map(turned));
         let [net_s, net_t] = [net.derivative_s(), net.derivative_t()];
@@ -50,9 +49,7 @@ impl Boxes {
         let ss = net.second(&v, &v.derivative_s(), &net_s);
         let st = net.second(&v, &v.derivative_t(), &net_t);
         let tt = net.second(&u, &u.derivative_t(), &net_t);
-        let (n, count) = (p.max(q) as f64, ((p + 1) * (q + 1)) as f64);
-        let margin =
-            |power: i32| 200.0 * n * n * (count + 10.0) * ROUNDING * radius * (heaviest / lightest).powi(power);
+        let margin = |power: i32| margin(leaf.degree, radius, heaviest / lightest, power);
         Self {
             p: wider(net.quotients(&net), margin(1)),
             ps: wider(v.quotients(&w2), margin(2)),
@@ -62,6 +59,12 @@ impl Boxes {
             ptt: wider(tt.quotients(&w3), margin(3)),
         }
     }
+}
+
+/// What the coefficients of a quotient with the weight to the given power are off by rounding, at most; `ratio` is that of the weights.
+fn margin((p, q): (usize, usize), radius: f64, ratio: f64, power: i32) -> f64 {
+    let (n, count) = (p.max(q) as f64, ((p + 1) * (q + 1)) as f64);
+    200.0 * n * n * (count + 10.0) * ROUNDING * radius * ratio.powi(power)
 }
 
 fn wider(bounds: Aabb, margin: f64) -> Aabb {
@@ -161,7 +164,7 @@ impl Polynomial {
 
 #[cfg(test)]
 mod tests {
-    use super::super::double_double::Random;
+    use super::super::double_double::{DoubleDouble, Random};
     use super::super::jet::Jet;
     use super::*;
     use fearless_simd::Level;
@@ -209,5 +212,132 @@ mod tests {
         let leaf = Shape { degree: (2, 0), rational: true, net: &net };
         let boxes = Boxes::around(leaf, &DMat3::IDENTITY, 2.0, (1.0, 1.0));
         assert!((boxes.ps.max - DVec3::new(2.0, 0.0, 0.0)).length() < 1e-9 && boxes.pss.diagonal() < 1e-9);
+    }
+
+    /// As [`Polynomial`], to 30 digits.
+    struct Exact {
+        degree: (usize, usize),
+        coefficients: Vec<[DoubleDouble; 4]>,
+    }
+
+    impl Exact {
+        fn at(&self, i: usize, j: usize) -> [DoubleDouble; 4] {
+            self.coefficients[i * (self.degree.1 + 1) + j]
+        }
+
+        /// All four coordinates times the other's weight.
+        fn times(&self, other: &Self) -> Self {
+            let ((p, q), (m, n)) = (self.degree, other.degree);
+            let number = DoubleDouble::from;
+            let mut sums = vec![[number(0.0); 4]; (p + m + 1) * (q + n + 1)];
+            for (e, a) in self.coefficients.iter().enumerate() {
+                for (f, b) in other.coefficients.iter().enumerate() {
+                    let (i, j, k, l) = (e / (q + 1), e % (q + 1), f / (n + 1), f % (n + 1));
+                    let ways = [binomial(p, i), binomial(m, k), binomial(q, j), binomial(n, l)];
+                    let share = ways.iter().fold(b[3], |share, way| share * number(*way));
+                    let share = share / exact_binomial(p + m, i + k) / exact_binomial(q + n, j + l);
+                    let sum = &mut sums[(i + k) * (q + n + 1) + j + l];
+                    (0..4).for_each(|c| sum[c] = sum[c] + share * a[c]);
+                }
+            }
+            Self { degree: (p + m, q + n), coefficients: sums }
+        }
+
+        fn minus(mut self, other: &Self, factor: f64) -> Self {
+            for (a, b) in self.coefficients.iter_mut().zip(&other.coefficients) {
+                (0..4).for_each(|c| a[c] = a[c] - DoubleDouble::from(factor) * b[c]);
+            }
+            self
+        }
+
+        fn derivative(&self, in_s: bool) -> Self {
+            let (p, q) = self.degree;
+            let (by, degree) = if in_s { (p, (p - 1, q)) } else { (q, (p, q - 1)) };
+            let factor = DoubleDouble::from(by as f64);
+            let indices = (0..=degree.0).flat_map(|i| (0..=degree.1).map(move |j| (i, j)));
+            let coefficients = indices.map(|(i, j)| {
+                let (next, here) = (if in_s { self.at(i + 1, j) } else { self.at(i, j + 1) }, self.at(i, j));
+                [0, 1, 2, 3].map(|c| factor * (next[c] - here[c]))
+            });
+            Self { degree, coefficients: coefficients.collect() }
+        }
+
+        /// The least and the most that each coordinate of the coefficients' quotients is.
+        fn quotients(&self, denominator: &Self) -> [[DoubleDouble; 2]; 3] {
+            let by = (denominator.degree.0 - self.degree.0, denominator.degree.1 - self.degree.1);
+            let one = [0.0, 0.0, 0.0, 1.0].map(DoubleDouble::from);
+            let raised = self.times(&Self { degree: by, coefficients: vec![one; (by.0 + 1) * (by.1 + 1)] });
+            [0, 1, 2].map(|c| {
+                let quotients = raised.coefficients.iter().zip(&denominator.coefficients).map(|(a, w)| a[c] / w[3]);
+                let by_value = |a: &DoubleDouble, b: &DoubleDouble| a.to_f64().total_cmp(&b.to_f64());
+                let all: Vec<DoubleDouble> = quotients.collect();
+                let least = all.iter().copied().min_by(by_value).expect("a net has coefficients");
+                let most = all.iter().copied().max_by(by_value).expect("a net has coefficients");
+                [least, most]
+            })
+        }
+    }
+
+    fn exact_binomial(n: usize, k: usize) -> DoubleDouble {
+        let number = DoubleDouble::from;
+        (0..k.min(n - k)).fold(number(1.0), |c, i| c * number((n - i) as f64) / number((i + 1) as f64))
+    }
+
+    /// The boxes are those of the exact coefficients to within their margins, and of even weights a thousandth of a margin is exceeded.
+    #[test]
+    fn boxes_err_within_their_margins() {
+        let mut random = Random(53);
+        let (mut worst, mut worst_even) = (0.0_f64, 0.0_f64);
+        for round in 0..240 {
+            let degree = [(1, 0), (2, 0), (5, 0), (25, 0), (1, 1), (2, 1), (1, 4), (3, 3)][round % 8];
+            // even weights, as wide as a leaf's are, and wider
+            let powers = [0.01, 1.2, 5.0][round / 8 % 3];
+            let count = (degree.0 + 1) * (degree.1 + 1);
+            let net: Vec<DVec4> = (0..count)
+                .map(|_| {
+                    let weight = 2.0 * 10.0_f64.powf(-random.between(0.0, powers));
+                    (random.point() * weight).extend(weight)
+                })
+                .collect();
+            let weights = net.iter().fold((f64::MAX, 0.0_f64), |(a, b), h| (a.min(h.w), b.max(h.w)));
+            let radius = net.iter().map(|h| (h.truncate() / h.w).length()).fold(0.0, f64::max);
+            let boxes = Boxes::around(Shape { degree, rational: true, net: &net }, &DMat3::IDENTITY, radius, weights);
+            let coefficients = net.iter().map(|h| h.to_array().map(DoubleDouble::from)).collect();
+            let net = Exact { degree, coefficients };
+            let w2 = net.times(&net);
+            let w3 = w2.times(&net);
+            let directions: &[bool] = if degree.1 > 0 { &[true, false] } else { &[true] };
+            let mut held = vec![(boxes.p, net.quotients(&net), 1)];
+            for in_s in directions {
+                let first = net.derivative(*in_s);
+                let v = first.times(&net).minus(&net.times(&first), 1.0);
+                held.push((if *in_s { boxes.ps } else { boxes.pt }, v.quotients(&w2), 2));
+                for and_s in directions {
+                    let other = net.derivative(*and_s);
+                    let second = v.derivative(*and_s).times(&net).minus(&v.times(&other), 2.0);
+                    let bounds = match (in_s, and_s) {
+                        (true, true) => boxes.pss,
+                        (false, false) => boxes.ptt,
+                        _ => boxes.pst,
+                    };
+                    held.push((bounds, second.quotients(&w3), 3));
+                }
+            }
+            for (bounds, exact, power) in held {
+                let margin = margin(degree, radius, weights.1 / weights.0, power);
+                for (c, [least, most]) in exact.into_iter().enumerate() {
+                    let beyond = |bound: f64, exact: DoubleDouble| (DoubleDouble::from(bound) - exact).to_f64();
+                    let (below, above) = (-beyond(bounds.min[c], least), beyond(bounds.max[c], most));
+                    assert!(below >= 0.0 && above >= 0.0, "{degree:?} {power}: {below} {above} of {margin}");
+                    let error = (below - margin).abs().max((above - margin).abs()) / margin;
+                    worst = worst.max(error);
+                    if powers < 0.1 {
+                        worst_even = worst_even.max(error);
+                    }
+                }
+            }
+        }
+        assert!(worst < 1.0, "the margin is exceeded: {worst}");
+        assert!(worst_even > 1e-3, "the margins are idle: {worst_even}");
     }
 }

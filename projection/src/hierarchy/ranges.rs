@@ -119,8 +119,8 @@ impl Along {
     #[inline(always)]
     fn lowest(&self, view: &View, factor: f64) -> (f64, f64) {
         let error = factor * view.rounding;
+        // a difference, not a sum: what is too large for single precision is infinite in both, and must fail
         let (middle, extent) = self.rise.at(view);
-        // the difference of two infinities fails, too: single precision may overflow where weights are far apart
         if middle - extent >= error {
             return (0.0, 0.0);
         }
@@ -342,4 +342,177 @@ fn square(a: &Aabb) -> (f64, f64) {
         let least = if a.min[k] <= 0.0 && a.max[k] >= 0.0 { 0.0 } else { x.min(y) };
         (low + least, high + x.max(y))
     })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::double_double::{DoubleDouble, Random, squared_distance};
+    use super::super::leaf::Leaf;
+    use super::super::piece::Piece;
+    use super::*;
+    use fearless_simd::Level;
+    use glam::DVec4;
+
+    const DEGREES: [(usize, usize); 12] =
+        [(1, 0), (2, 0), (3, 0), (9, 0), (25, 0), (1, 1), (2, 1), (1, 5), (2, 2), (3, 3), (3, 2), (5, 5)];
+
+    /// A piece near a parallelogram, or as far from it as `bend` says, whose weights are up to `ratio` apart.
+    fn leaf(degree: (usize, usize), bend: f64, ratio: Option<f64>, random: &mut Random) -> Leaf {
+        let (p, q) = degree;
+        let (along, across) = (random.point(), random.point());
+        let share = |k: usize, n: usize| if n > 0 { k as f64 / n as f64 } else { 0.0 };
+        let net: Vec<DVec4> = (0..(p + 1) * (q + 1))
+            .map(|e| {
+                let flat = share(e / (q + 1), p) * along + share(e % (q + 1), q) * across;
+                let weight = ratio.map_or(1.0, |ratio| ratio.powf(random.between(0.0, 1.0)));
+                ((flat + bend * random.point()) * weight).extend(weight)
+            })
+            .collect();
+        let piece = Piece { degree, net, rational: ratio.is_some(), u: (0.0, 1.0), v: (0.0, 1.0) };
+        Leaf::new(piece, Level::new(), &mut Vec::new())
+    }
+
+    /// A query about a leaf's origin: from on the leaf to a thousand radii away.
+    fn query(leaf: &Leaf, random: &mut Random) -> DVec3 {
+        let on = leaf.jet(random.between(0.0, 1.0), random.between(0.0, 1.0)).point();
+        on + leaf.radius * 10.0_f64.powf(random.between(-9.0, 3.0)) * random.point()
+    }
+
+    /// Parameters with the corners and edges among them.
+    fn parameters(leaf: &Leaf, random: &mut Random) -> (f64, f64) {
+        let mut one = || random.between(-0.3, 1.3).clamp(0.0, 1.0);
+        let (s, t) = (one(), one());
+        (s, if leaf.degree.1 == 0 { 0.0 } else { t })
+    }
+
+    fn ratio(round: usize, random: &mut Random) -> Option<f64> {
+        match round % 4 {
+            0 => None,
+            1 => Some(1.0 + random.between(0.0, 1e-3)),
+            2 => Some(16.0),
+            // what a leaf has whose splitting ran out of room
+            _ => Some(10.0_f64.powf(random.between(1.0, 4.0))),
+        }
+    }
+
+    /// Where the ranges of one direction hold: over the lines at all `t`, or on an edge.
+    fn held_along(ranges: &Ranges, in_s: bool, other: f64) -> Vec<&Along> {
+        let (whole, edges) = if in_s { (&ranges.s, &ranges.edges_s) } else { (&ranges.t, &ranges.edges_t) };
+        let is_edge = ranges.degree.1 > 0 && (other == 0.0 || other == 1.0);
+        [Some(whole), is_edge.then(|| &edges[other as usize])].into_iter().flatten().collect()
+    }
+
+    /// Each secant and second derivative of the squared distance, to 30 digits, lies in its range; and the ranges are not idle: of polynomial pieces more
+    /// than half of one is met. (What is reserved for rounding lies far below the single precision of the boxes.)
+    #[test]
+    fn derivatives_lie_in_their_ranges() {
+        let mut random = Random(43);
+        let mut fullest = 0.0_f64;
+        for round in 0..1200 {
+            let degree = DEGREES[round / 4 % DEGREES.len()];
+            let ratio = ratio(round, &mut random);
+            let bend = if round % 3 == 0 { 0.0 } else { 10.0_f64.powf(random.between(-4.0, 0.0)) };
+            let leaf = leaf(degree, bend, ratio, &mut random);
+            let ranges = leaf.ranges();
+            for _ in 0..6 {
+                let x = query(&leaf, &mut random);
+                let view = ranges.view(x, leaf.along_axes(x));
+                let mut check = |what: &str, range: &Affine, exact: DoubleDouble, factor: f64| {
+                    let (middle, extent) = range.at(&view);
+                    let (apart, held) =
+                        ((exact - DoubleDouble::from(middle)).to_f64().abs(), extent + factor * view.rounding);
+                    assert!(apart <= held, "{what} of {degree:?} with {ratio:?} at {x}: {apart} beyond {held}");
+                    if ratio.is_none() {
+                        fullest = fullest.max(apart / held);
+                    }
+                };
+                for _ in 0..4 {
+                    let (s, t) = parameters(&leaf, &mut random);
+                    let at = |s: f64, t: f64| squared_distance(&leaf.net, degree, x, (s, t));
+                    let (here, [first, last], [low, high]) =
+                        (at(s, t), [at(0.0, t), at(1.0, t)], [at(s, 0.0), at(s, 1.0)]);
+                    let secant = |from: DoubleDouble, step: f64, slope: DoubleDouble| {
+                        if step > 0.0 { (here[0] - from) / step } else { slope }
+                    };
+                    let negative = |x: DoubleDouble| DoubleDouble::from(0.0) - x;
+                    for along in held_along(ranges, true, t) {
+                        check("rise in s", &along.rise, secant(first[0], s, here[1]), ranges.m);
+                        check("fall in s", &along.fall, secant(last[0], 1.0 - s, negative(here[1])), ranges.m);
+                        check("bend in s", &along.bend, here[3], ranges.m * (ranges.m - 1.0));
+                    }
+                    if degree.1 > 0 {
+                        for along in held_along(ranges, false, s) {
+                            check("rise in t", &along.rise, secant(low[0], t, here[2]), ranges.n);
+                            check("fall in t", &along.fall, secant(high[0], 1.0 - t, negative(here[2])), ranges.n);
+                            check("bend in t", &along.bend, here[5], ranges.n * (ranges.n - 1.0));
+                        }
+                        check("twist", &ranges.st, here[4], ranges.m * ranges.n);
+                    }
+                }
+            }
+        }
+        assert!(fullest > 0.5, "the ranges are idle: {fullest}");
+    }
+
+    /// Weights may be so far apart that a box is too large for single precision: then nothing is claimed.
+    #[test]
+    fn what_single_precision_cannot_hold_claims_nothing() {
+        let mut random = Random(59);
+        let mut infinite = 0;
+        for round in 0..200 {
+            let degree = [(1, 0), (2, 0), (1, 1), (2, 2)][round % 4];
+            let leaf = leaf(degree, 0.1, Some(10.0_f64.powf(random.between(18.0, 99.0))), &mut random);
+            let ranges = leaf.ranges();
+            let x = query(&leaf, &mut random);
+            let view = ranges.view(x, leaf.along_axes(x));
+            infinite += usize::from(ranges.s.rise.extent.iter().any(|x| x.is_infinite()));
+            let domain = ranges.lowest(&view);
+            for _ in 0..20 {
+                let at = parameters(&leaf, &mut random);
+                let [anywhere, there] =
+                    [at, domain.clamp(at.0, at.1)].map(|at| squared_distance(&leaf.net, degree, x, at)[0]);
+                assert!((anywhere - there).to_f64() >= 0.0, "{degree:?} at {at:?} is nearer than in {domain:?}");
+            }
+        }
+        assert!(infinite > 20, "single precision held all but {infinite}");
+    }
+
+    /// No dense sample of a leaf contradicts the edge or corner that is claimed to be nearest, nor the claimed curvature; and both are claimed often.
+    #[test]
+    fn no_sample_contradicts_what_the_ranges_claim() {
+        let mut random = Random(47);
+        let (mut edges, mut curved, mut count) = (0, 0, 0);
+        for round in 0..600 {
+            let degree = DEGREES[round / 4 % DEGREES.len()];
+            let ratio = ratio(round, &mut random);
+            let bend = 10.0_f64.powf(random.between(-4.0, 0.0));
+            let leaf = leaf(degree, bend, ratio, &mut random);
+            let ranges = leaf.ranges();
+            for _ in 0..4 {
+                let x = query(&leaf, &mut random);
+                let view = ranges.view(x, leaf.along_axes(x));
+                let domain = ranges.lowest(&view);
+                let curvature = ranges.curvature(&view, &domain);
+                let (along_s, along_t) = (domain.s.0 < domain.s.1, domain.t.0 < domain.t.1);
+                count += 1;
+                edges += usize::from(!along_s || (degree.1 > 0 && !along_t));
+                curved += usize::from(curvature.is_some() && (along_s || along_t));
+                for _ in 0..12 {
+                    let at = parameters(&leaf, &mut random);
+                    let anywhere = squared_distance(&leaf.net, degree, x, at);
+                    let inside = domain.clamp(at.0, at.1);
+                    let [there, _, _, ss, st, tt] = squared_distance(&leaf.net, degree, x, inside);
+                    let farther = (anywhere[0] - there).to_f64();
+                    assert!(farther >= 0.0, "{degree:?} at {at:?}: nearer than {inside:?} by {farther}");
+                    let Some(Curvature { s, t }) = curvature else { continue };
+                    let left = |second: DoubleDouble, claimed: f64| (second - DoubleDouble::from(claimed)).to_f64();
+                    let (left_s, left_t, st) = (left(ss, s), left(tt, t), st.to_f64());
+                    assert!(!along_s || (s > 0.0 && left_s >= 0.0), "{degree:?} at {inside:?}: {left_s}");
+                    assert!(!along_t || (t > 0.0 && left_t >= 0.0), "{degree:?} at {inside:?}: {left_t}");
+                    assert!(!(along_s && along_t) || left_s * left_t >= st * st, "{left_s} {left_t} {st}");
+                }
+            }
+        }
+        assert!(edges * 20 > count && curved * 10 > count, "nothing is claimed: {edges} and {curved} of {count}");
+    }
 }

@@ -39,6 +39,12 @@ impl Goal {
         let sought = if distance > self.wanted { sought.max(self.wanted) } else { sought };
         sought.min(self.limit)
     }
+
+    /// How far a foot may be to count as one as near as the best point, which is at `distance`.
+    #[inline]
+    pub(super) fn reach(&self, distance: f64) -> f64 {
+        (distance + self.gap).min(self.limit)
+    }
 }
 
 /// The state of one query, shared by all leaves. All lengths are in the entity's own coordinates.
@@ -66,7 +72,7 @@ impl State<'_> {
 
     /// How far a foot may be to count as one as near as the best.
     pub(super) fn reach(&self) -> f64 {
-        (self.best.distance + self.goal.gap).min(self.goal.limit)
+        self.goal.reach(self.best.distance)
     }
 
     /// What the squared distance of a foot exceeds `tau²` by, at least, where it is worth proving.

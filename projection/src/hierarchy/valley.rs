@@ -43,7 +43,9 @@ pub(super) fn least_beside(
     }
     let curvature = bend * (degree * (degree - 1)) as f64;
     let steepest = (slope + 2.0 * grown) * degree as f64;
-    floor - grown - steepest * steepest / (2.0 * curvature)
+    let bound = floor - grown - steepest * steepest / (2.0 * curvature);
+    // the minima above pass over what is no number
+    if bound.is_finite() { bound } else { f64::NEG_INFINITY }
 }
 
 #[cfg(test)]
