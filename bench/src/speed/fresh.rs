@@ -80,7 +80,7 @@ fn first_query(definition: &Arc<Definition>, points: &[DVec3]) -> Result<f64, Fa
 
 /// Preparation with all that queries add to it: the time of a query above every leaf, less that of the same queries again.
 fn preparation(run: &Run, table: &mut Table) -> Result<(), Failure> {
-    table.heading("preparation, with the tables of every leaf");
+    table.heading("preparation and a query above every leaf");
     let named = run.sets.surfaces.iter().find(|entity| entity.name == "wavy-40x40").ok_or("wavy-40x40 is absent")?;
     let wave = Arc::new(Definition::from(wavy(40)?));
     for (what, definition) in
