@@ -18,7 +18,7 @@ const OFF: (f64, f64) = (1e3, 1e-6);
 /// Points that bend less than this tell no plane and no circle: twice the area of their triangle as a share of its longest side's square.
 const BENT: f64 = 1e-2;
 
-/// Of this many samples, the ends of as many parts less one.
+/// A curve is looked at where this many equal parts of its domain begin and end.
 const PARTS: u32 = 8;
 
 fn off(tolerance: f64, extent: f64) -> f64 {

@@ -1,4 +1,4 @@
-//! The proof for one leaf: no point of it is nearer than `tau`.
+//! The proof for one leaf by its form, where a glance did not give it: no point of it is nearer than `tau`.
 //!
 //! A box of the leaf's parameters is described by the net `g` of the form on it. Two things are kept beside the net:
 //!
@@ -17,7 +17,8 @@
 //! 4. **Convex**: with `H >= diag(a, c)` on the box and any point `x0` of it,
 //!    `G >= G(x0) + min (Gs ds + a ds²/2) + min (Gt dt + c dt²/2)` over the steps that stay in the box. At the corners value and gradient are
 //!    coefficients; elsewhere they are evaluated, with errors of their own ([`bound`](super::bound)).
-//! 5. **Valley**: convex in one direction, and level enough in the other ([`valley`](super::valley)). Only where a foot was sought and found no nearer.
+//! 5. **Valley**: convex in one direction, and level enough in the other ([`valley`]), seen from the line of the point that Newton's
+//!    method found. Not on the whole leaf, which is split first, and only where that point is no nearer.
 //! 6. else the box is split.
 //!
 //! Reductions may give away a tenth of the margin that the form has at a foot; whether they gave too much, the closing test decides.
@@ -35,7 +36,7 @@ use super::newton::{self, Domain, Found, Search};
 use super::state::{Foot, State};
 use super::valley;
 
-/// Working memory: the nets of all boxes that wait, the boxes, and the matrices of the convexity test.
+/// Working memory: the nets of all boxes that wait, the boxes, the matrices of the convexity test, and a line of the valley's.
 #[derive(Debug, Default)]
 pub(super) struct Memory {
     nets: Vec<f64>,

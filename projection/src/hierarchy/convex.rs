@@ -76,12 +76,8 @@ fn either<S: Simd>(
     scratch: &mut Vec<f64>,
 ) -> Option<Curvature> {
     match patch.layout {
-        Layout { m: 0, .. } => {
-            in_one(patch, differences).map(|t| Curvature { s: 0.0, t: t / patch.extent.1.powi(2) })
-        }
-        Layout { n: 0, .. } => {
-            in_one(patch, differences).map(|s| Curvature { s: s / patch.extent.0.powi(2), t: 0.0 })
-        }
+        Layout { m: 0, .. } => in_one(patch, differences).map(|t| Curvature { s: 0.0, t: t / patch.extent.1.powi(2) }),
+        Layout { n: 0, .. } => in_one(patch, differences).map(|s| Curvature { s: s / patch.extent.0.powi(2), t: 0.0 }),
         _ => by_intervals(patch, differences).or_else(
             #[inline(always)]
             || by_matrices(simd, patch, extent, scratch),

@@ -13,7 +13,8 @@
 //! g = c0 - 2 x · c1 + (|x|² - tau²) c2,     c0 ~ |A|²,  c1 ~ A w,  c2 ~ w²
 //! ```
 //!
-//! so three tables, made once, give it for every query without a division. Where all weights are 1, `c2 = 1`: then the form
+//! so three tables give it for every query without a division. They are made by the first proof that needs the form; the ranges of a polynomial leaf
+//! are made of the same coefficients and keep none. Where all weights are 1, `c2 = 1` has no table: then the form
 //! leaves `tau` out and is compared with `tau²` instead of 0, and stays good when `tau` falls.
 //!
 //! # Rounding

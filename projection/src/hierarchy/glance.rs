@@ -1,7 +1,7 @@
 //! The first proof that is tried for a leaf: from the ranges of the derivatives of its squared distance, without the form.
 //!
-//! Where the slopes' signs tell on which edge or corner the leaf is nearest, only that remains. A corner is a control point. Elsewhere, where
-//! the ranges show the squared distance convex, a point from Newton's method bounds it from below ([`bound`](super::bound)).
+//! Where secants (of a rational leaf, slopes) tell on which edge or corner the leaf is nearest, only that remains. A corner is a control point.
+//! Elsewhere, where the ranges show the squared distance convex, a point from Newton's method bounds it from below ([`bound`](super::bound)).
 
 use fearless_simd::{Simd, dispatch};
 

@@ -1,4 +1,7 @@
-//! A leaf of the hierarchy: a Bézier piece about its own origin, with its boxes and tables.
+//! A leaf of the hierarchy: a Bézier piece about its own origin, with its boxes.
+//!
+//! Its ranges and the tables of its form are made when a query first asks for each: most leaves of a large entity are never looked at, and the ranges
+//! prove most of the others.
 
 use std::sync::OnceLock;
 

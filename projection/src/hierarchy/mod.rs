@@ -3,17 +3,21 @@
 //! # Order of work
 //!
 //! Preparing brings the definition into its own [`frame`], cuts it into Bézier [`piece`]s at every knot, splits those that bend too
-//! much, and makes a [`leaf`] of each, with its boxes. A query [`walk`]s: it descends to one leaf and takes a first point there by [`newton`]; then it
-//! collects the leaves whose boxes are nearer, and proves them one by one, the nearest first: each either holds no point
-//! nearer than `tau`, the upper bound less the gap, or yields a nearer point, and `tau` falls. A [`glance`] at the [`ranges`] of the leaf's form proves
-//! most; the form itself the others ([`certify`]). Where rounding stops the proof, the leaf's vector piece
-//! is split and the proof is tried on both halves: rounding falls with the square of their radius. The [`reply`] is read off the best foot.
+//! much, and makes a [`leaf`] of each, with its boxes. A query [`walk`]s: it descends a tree of these boxes to one leaf, whose first look gives an upper
+//! bound; then it collects the leaves whose boxes are nearer, and proves them one by one, the nearest first: each either holds no point
+//! nearer than `tau`, the upper bound less the gap, or yields a nearer point, and `tau` falls. A [`glance`] at the [`ranges`] of the squared distance
+//! proves most; the [`form`] the others ([`certify`]). Ranges and the form's tables are made by the first query that needs them. Where rounding stops
+//! the proof, the leaf's vector piece is split and the proof is tried on both halves: rounding falls with the square of their radius. The [`reply`] is
+//! read off the best foot.
 //!
 //! # What makes the same query give the same bits
 //!
 //! The walk reads nothing but the query: leaves come in the order of their box distance and index, and the first leaf is found from the
 //! point alone. A hint (a point of the entity whose distance is known) only bounds which leaves are collected at first; when `tau` does not fall
 //! below that bound, the rest is collected too. So the same leaves are proven in the same order, with a hint or without.
+//!
+//! The SIMD level of the processor changes no bit either: vectors have four lanes at every level, lanes are added in one order, and no product is fused
+//! with a sum.
 
 mod bound;
 mod certify;

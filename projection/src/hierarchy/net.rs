@@ -222,7 +222,13 @@ fn find_edge<S: Simd>(simd: S, g: &[f64], extent: impl Extent, holds: f64, given
     let (stride, g) = (extent.stride(), &g[..extent.rows_len()]);
     for last in [false, true] {
         let start = if last { extent.m() * stride } else { 0 };
-        if least_of(simd, stride, #[inline(always)] |at| load(simd, g, start + at)) <= holds {
+        if least_of(
+            simd,
+            stride,
+            #[inline(always)]
+            |at| load(simd, g, start + at),
+        ) <= holds
+        {
             let above = rows_above(simd, g, extent, last);
             if above >= -given {
                 return Some((Edge::Row { last }, above));
@@ -231,7 +237,10 @@ fn find_edge<S: Simd>(simd: S, g: &[f64], extent: impl Extent, holds: f64, given
     }
     for last in [false, true] {
         let at = if last { extent.n() } else { 0 };
-        if (0..=extent.m()).any(#[inline(always)] |i| g[i * stride + at] <= holds) {
+        if (0..=extent.m()).any(
+            #[inline(always)]
+            |i| g[i * stride + at] <= holds,
+        ) {
             let above = columns_above(simd, g, extent, last, -given);
             if above >= -given {
                 return Some((Edge::Column { last }, above));

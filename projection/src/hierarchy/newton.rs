@@ -1,4 +1,5 @@
-//! Newton's method for the nearest point of a leaf, inside a box of its parameters.
+//! Newton's method for the nearest point of a leaf, inside a box of its parameters; and the last steps of a query's foot, at parameters to which the
+//! definition's own round.
 
 use fearless_simd::{Simd, dispatch};
 use glam::DVec3;

@@ -18,7 +18,7 @@
 //! A coefficient of a product is, but for its binomials, a convex combination of at most `N = (p + 1)(q + 1)` products of coefficients: it errs by at
 //! most `(N + 10) u` of the largest of these. With `|A| <= r W`, `w <= W`, a derivative being at most `2 n` times its polynomial and `n` the greater
 //! degree: `|V| <= 4 n r W²` errs by `6 n (N + 10) u r W²`, the numerators of the second derivatives are at most `24 n² r W³` and err by
-//! `100 n² (N + 10) u r W³`. Divided by the least denominator, with `rho` the ratio of the weights, [`margin`] is twice that.
+//! `100 n² (N + 10) u r W³`. Divided by the least denominator, with `rho` the ratio of the weights, `margin` is twice that.
 
 use glam::{DMat3, DVec3, DVec4};
 use perpend_kernel::{Aabb, binomial};

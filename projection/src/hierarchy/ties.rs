@@ -203,11 +203,8 @@ impl Hierarchy {
         continua: &[Vec<ParameterBox>],
         state: &mut State<'_>,
     ) -> Vec<Settled> {
-        let mut polished: Vec<Settled> = feet
-            .into_iter()
-            .map(|foot| self.polish(&foot, state))
-            .filter(|foot| foot.distance() <= reach)
-            .collect();
+        let mut polished: Vec<Settled> =
+            feet.into_iter().map(|foot| self.polish(&foot, state)).filter(|foot| foot.distance() <= reach).collect();
         let by_parameters = |a: &Settled, b: &Settled| {
             let (a, b) = (a.parameters(), b.parameters());
             a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1))

@@ -15,7 +15,7 @@ use super::net::Layout;
 /// The least that the form with the net `g` can be, seen from the line at `at` of its first variable (`in_s`) or of its second, in the box's own
 /// parameters, where `bend` is a lower bound of the second differences across the line, positive. `scratch` is working memory.
 ///
-/// Every coefficient of the true form differs from its `g` by at most `rounding`. The restriction takes convex combinations, one rounding a
+/// Every coefficient of the true form differs from its `g` by at most `rounding`. The restriction takes convex combinations, three roundings a
 /// level, of numbers that are at most `largest`.
 pub(super) fn least_beside(
     (g, layout): (&[f64], Layout),
