@@ -518,7 +518,7 @@ mod tests {
                 let mirrored = half.iter().rev().map(|p| DVec3::new(p.x, p.y, -p.z));
                 half.iter().copied().chain(across).chain(mirrored).collect()
             };
-            let strips: Vec<Vec<DVec3>> = (0..columns).map(|column| strip(column)).collect();
+            let strips: Vec<Vec<DVec3>> = (0..columns).map(&mut strip).collect();
             let count = strips[0].len();
             // the weights rise to the middle and fall again
             let weight = |k: usize| 1.0 + 0.2 * (round % 2 * k.min(count - 1 - k).min(degree)) as f64;
