@@ -31,7 +31,7 @@
 //!
 //! Of a polynomial leaf a coefficient of the form errs by at most [`rounding_bound`], a first difference by twice and a second by four times that, made of
 //! the same coefficients; the axes turn vectors and query with errors of less than `32 u` of their product, `|c1|` of a difference being at most
-//! `4 r`. Twice the largest of these bounds pays for it all. The boxes of a rational leaf hold their own rounding; with `n` the greater degree and `rho` the ratio
+//! `4 r`. Twice the largest of these bounds pays for it all. The boxes of a rational leaf hold their own rounding; with `n` the degree in their direction and `rho` the ratio
 //! of the weights their vectors are at most `24 n² r rho³` and their constants `32 n² r² rho⁴` ([`quotient`](super::quotient)), and turning and
 //! summing errs by less than `40 u` of the products with the query: less than the bound of a polynomial leaf times `rho⁴`, since `(|x| + r)² >= 4 |x| r`. Storing in single precision needs no share: the extent is taken from the rounded middle, and rounded outwards.
 
