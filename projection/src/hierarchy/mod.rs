@@ -95,7 +95,14 @@ pub(crate) struct Hierarchy {
 pub(crate) struct Workspace {
     memory: Memory,
     candidates: Vec<Candidate>,
+    lists: Lists,
+}
+
+/// Lists that a query's state keeps.
+#[derive(Debug, Default)]
+struct Lists {
     met: Vec<Foot>,
+    neighbours: Vec<Candidate>,
 }
 
 /// What the solver found, in the entity's own coordinates.
@@ -175,11 +182,11 @@ impl Hierarchy {
         hint: Option<DVec3>,
         workspace: &mut Workspace,
     ) -> Option<LocalSolution> {
-        let Workspace { memory, candidates, met } = workspace;
+        let Workspace { memory, candidates, lists } = workspace;
         let point = self.frame.enter(query.point);
         let hint = hint.map_or(f64::INFINITY, |hint| self.frame.enter(hint).distance(point));
         let (first, boxes) = self.tree.descend(point).expect("an entity has leaves");
-        let mut state = self.state(query, self.part(first).middle(point), met);
+        let mut state = self.state(query, self.part(first).middle(point), lists);
         state.done.boxes += boxes;
         let visited = self.visit_first(query, first, &mut state);
         self.walk(visited, &mut state, hint, memory, candidates);
@@ -189,12 +196,12 @@ impl Hierarchy {
     /// The nearest point of the entity, from a proposal of its parameters: proved, or corrected where another point is nearer by more
     /// than the gap.
     pub(crate) fn prove(&self, query: &Query, (u, v): (f64, f64), scratch: &mut Scratch) -> (Solved, bool) {
-        let Workspace { memory, candidates, met } = &mut scratch.hierarchy;
+        let Workspace { memory, candidates, lists } = &mut scratch.hierarchy;
         let part = self.part(self.leaf_at(u, v));
         let x = self.frame.enter(query.point) - part.leaf.origin;
         let proposal = part.foot(&newton::point(part.leaf, x, part.leaf.own_parameters(u, v)));
         let proposed = proposal.distance;
-        let mut state = self.state(query, proposal, met);
+        let mut state = self.state(query, proposal, lists);
         state.done.evaluations += 1;
         self.walk(None, &mut state, f64::INFINITY, memory, candidates);
         let solution = self.within(query, self.solution(&mut state, self.coincidence(query)), &state);
@@ -343,8 +350,8 @@ mod tests {
                 let x = hierarchy.frame.enter(p) - leaf.origin;
                 let start = hierarchy.part(index).foot(&newton::point(leaf, x, (0.3, 0.6)));
                 let spoilt = Foot { next: (start.s, start.t), ..start };
-                let Workspace { memory, candidates, met } = &mut workspace;
-                let mut state = hierarchy.state(&query, spoilt, met);
+                let Workspace { memory, candidates, lists } = &mut workspace;
+                let mut state = hierarchy.state(&query, spoilt, lists);
                 hierarchy.walk(None, &mut state, f64::INFINITY, memory, candidates);
                 let spoilt = hierarchy.solution(&mut state, 0.0);
                 let gap = hierarchy.asked_gap(&query) + 64.0 * ROUNDING * hierarchy.frame.enter(p).length();

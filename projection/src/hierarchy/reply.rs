@@ -3,6 +3,7 @@
 use std::mem::swap;
 
 use glam::{DVec3, DVec4};
+use smallvec::SmallVec;
 
 use super::newton::{self, Polished};
 use super::state::{Foot, State};
@@ -57,13 +58,13 @@ impl Hierarchy {
     }
 
     /// The feet that were met elsewhere and are as near as the best one within the gap, polished.
-    fn others(&self, best: &Settled, coincidence: f64, state: &mut State<'_>) -> Vec<Settled> {
+    fn others(&self, best: &Settled, coincidence: f64, state: &mut State<'_>) -> SmallVec<[Settled; 2]> {
         let near = best.distance() + state.goal.gap;
         let apart = |distance: f64, point: DVec3| distance <= near && point.distance(best.point) > coincidence;
         // two feet of one leaf that are this close in its parameters are one on its way to convergence
         let (s, t) = (best.polished.found.s, best.polished.found.t);
         let close = |foot: &Foot| foot.leaf == best.leaf && (foot.s - s).abs().max((foot.t - t).abs()) < 1e-2;
-        let mut others = Vec::new();
+        let mut others = SmallVec::new();
         for k in 0..state.met.len() {
             let foot = state.met[k];
             if apart(foot.distance, foot.point) && !close(&foot) {
@@ -141,7 +142,6 @@ impl Hierarchy {
     /// Follows a foot out of its leaf: where it lies on a border with another leaf, the distance may go on falling there. The proof
     /// does not ask for that, as it is less than the gap; the foot's place does.
     fn cross_borders(&self, foot: &mut Settled, state: &mut State<'_>) {
-        let mut neighbours = Vec::new();
         for _ in 0..CROSSINGS {
             let here = *foot;
             let leaf = &self.leaves[here.leaf as usize];
@@ -154,9 +154,10 @@ impl Hierarchy {
                 return;
             }
             let (u, v) = here.parameters();
-            neighbours.clear();
-            state.done.boxes += self.tree.nearer_than(here.point, squared(1e-9), &mut neighbours);
-            for neighbour in &neighbours {
+            state.neighbours.clear();
+            state.done.boxes += self.tree.nearer_than(here.point, squared(1e-9), state.neighbours);
+            for k in 0..state.neighbours.len() {
+                let neighbour = state.neighbours[k];
                 let other = &self.leaves[neighbour.item as usize];
                 if neighbour.item != here.leaf && holds(other.u, u) && holds(other.v, v) {
                     let x = state.point - other.origin;

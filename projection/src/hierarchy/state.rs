@@ -3,6 +3,7 @@
 use glam::DVec3;
 
 use crate::statistics::Work;
+use crate::tree::Candidate;
 
 /// A point of the entity.
 #[derive(Debug, Clone, Copy)]
@@ -56,6 +57,8 @@ pub(super) struct State<'m> {
     pub best: Foot,
     /// Feet met on the way that are nearest within the gap, for the answer's multiplicity.
     pub met: &'m mut Vec<Foot>,
+    /// Working memory: leaves beside a foot.
+    pub neighbours: &'m mut Vec<Candidate>,
     /// The least lower bound of the boxes that were left open.
     pub open: f64,
     /// Splits that are left.

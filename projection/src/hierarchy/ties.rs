@@ -61,8 +61,8 @@ impl Hierarchy {
     pub(crate) fn ties(&self, query: &Query, workspace: &mut Workspace) -> Option<TieSet> {
         let mut nearest = self.project(query, None, workspace)?;
         let near = self.near(&nearest, query);
-        let Workspace { candidates, met, .. } = workspace;
-        let mut state = self.state(query, near, met);
+        let Workspace { candidates, lists, .. } = workspace;
+        let mut state = self.state(query, near, lists);
         let coincidence = self.coincidence(query);
         let reach = nearest.distance + state.goal.gap.max(self.asked_gap(query));
         candidates.clear();

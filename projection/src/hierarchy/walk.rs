@@ -7,7 +7,7 @@ use super::certify::{Memory, Outcome, Part, certify};
 use super::form::{rounding_bound, rounding_factor};
 use super::newton::Domain;
 use super::state::{Foot, Goal, State};
-use super::{Hierarchy, LocalSolution, REFINED_DEPTH, ROUNDING, glance, piece, squared};
+use super::{Hierarchy, Lists, LocalSolution, REFINED_DEPTH, ROUNDING, glance, piece, squared};
 use crate::query::{DEFAULT_GAP, Query};
 use crate::statistics::Work;
 use crate::tree::Candidate;
@@ -21,7 +21,8 @@ pub(super) struct Visited {
 
 impl Hierarchy {
     /// The state of a query of which one point is known.
-    pub(super) fn state<'m>(&self, query: &Query, best: Foot, met: &'m mut Vec<Foot>) -> State<'m> {
+    pub(super) fn state<'m>(&self, query: &Query, best: Foot, lists: &'m mut Lists) -> State<'m> {
+        let Lists { met, neighbours } = lists;
         met.clear();
         met.push(best);
         State {
@@ -29,6 +30,7 @@ impl Hierarchy {
             goal: self.goal(query, &best),
             best,
             met,
+            neighbours,
             open: f64::INFINITY,
             work: query.options.work,
             done: Work::default(),
