@@ -12,6 +12,21 @@ pub(super) struct Curvature {
     pub t: f64,
 }
 
+impl Curvature {
+    /// From lower bounds of both second derivatives and the largest |mixed derivative|: with `rho² = mixed² / (s t)`, if both are positive and `rho`
+    /// is less than [`CORRELATED`], `H >= (1 - rho) diag(s, t)`. A millionth of that pays for the rounding of `1 - rho`.
+    #[inline(always)]
+    pub(super) fn uncorrelated(s: f64, t: f64, mixed: f64) -> Option<Self> {
+        // not `<=`: a NaN must fail too
+        if !(s > 0.0 && t > 0.0) {
+            return None;
+        }
+        let rho = mixed / (s * t).sqrt();
+        let left = (1.0 - rho) * (1.0 - 1e-6);
+        (rho <= CORRELATED).then_some(Self { s: left * s, t: left * t })
+    }
+}
+
 /// A box's net, the box's extents, and the bound of the coefficients' rounding.
 #[derive(Debug, Clone, Copy)]
 pub(super) struct Patch<'a> {
@@ -25,7 +40,7 @@ pub(super) struct Patch<'a> {
 const WORTHWHILE: f64 = 0.02;
 
 /// Above this correlation of the interval test the matrix test, if it holds, gives the better bound.
-pub(super) const CORRELATED: f64 = 0.98;
+const CORRELATED: f64 = 0.98;
 
 /// How a form bends on a box.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -98,15 +113,10 @@ fn in_one(patch: Patch<'_>, differences: Differences) -> Option<f64> {
 fn by_intervals(patch: Patch<'_>, differences: Differences) -> Option<Curvature> {
     let Patch { layout: Layout { m, n }, extent, rounding, .. } = patch;
     let (down, along) = (differences.down - 4.0 * rounding, differences.along - 4.0 * rounding);
-    // not `<=`: a NaN must fail too
-    if !(down > 0.0 && along > 0.0) {
-        return None;
-    }
     let s = down * (m * (m - 1)) as f64 / extent.0.powi(2);
     let t = along * (n * (n - 1)) as f64 / extent.1.powi(2);
     let mixed = (differences.mixed + 4.0 * rounding) * (m * n) as f64 / (extent.0 * extent.1);
-    let rho = mixed / (s * t).sqrt();
-    (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
+    Curvature::uncorrelated(s, t, mixed)
 }
 
 /// Lanes of `weight` whose index `j` lies in a range, zeros elsewhere.

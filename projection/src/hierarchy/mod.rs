@@ -189,7 +189,7 @@ impl Hierarchy {
         let mut state = self.state(query, self.part(first).middle(point), lists);
         state.done.boxes += boxes;
         let visited = self.visit_first(query, first, &mut state);
-        self.walk(visited, &mut state, hint, memory, candidates);
+        self.walk(Some(visited), &mut state, hint, memory, candidates);
         self.within(query, self.solution(&mut state, self.coincidence(query)), &state)
     }
 
@@ -197,7 +197,7 @@ impl Hierarchy {
     /// than the gap.
     pub(crate) fn prove(&self, query: &Query, (u, v): (f64, f64), scratch: &mut Scratch) -> (Solved, bool) {
         let Workspace { memory, candidates, lists } = &mut scratch.hierarchy;
-        let part = self.part(self.leaf_at(u, v));
+        let part = self.part(self.leaf_at(u, v, candidates));
         let x = self.frame.enter(query.point) - part.leaf.origin;
         let proposal = part.foot(&newton::point(part.leaf, x, part.leaf.own_parameters(u, v)));
         let proposed = proposal.distance;
@@ -217,8 +217,8 @@ impl Hierarchy {
         }
     }
 
-    /// A leaf that holds these parameters.
-    fn leaf_at(&self, u: f64, v: f64) -> u32 {
+    /// A leaf that holds these parameters; `found` is working memory.
+    fn leaf_at(&self, u: f64, v: f64, found: &mut Vec<Candidate>) -> u32 {
         let tree = self.parameters.get_or_init(|| {
             let corner = |u: f64, v: f64| DVec3::new(u, v, 0.0);
             let boxes = self
@@ -227,8 +227,8 @@ impl Hierarchy {
                 .map(|leaf| Aabb { min: corner(leaf.u.0, leaf.v.0), max: corner(leaf.u.1, leaf.v.1) });
             BoxTree::new(&boxes.collect::<Vec<_>>())
         });
-        let mut found = Vec::new();
-        tree.nearer_than(DVec3::new(u, v, 0.0), f64::MIN_POSITIVE, &mut found);
+        found.clear();
+        tree.nearer_than(DVec3::new(u, v, 0.0), f64::MIN_POSITIVE, found);
         let leaf = |item: u32| &self.leaves[item as usize];
         let holding = found.iter().map(|c| c.item).filter(|item| holds(leaf(*item).u, u) && holds(leaf(*item).v, v));
         holding.min().unwrap_or_default()

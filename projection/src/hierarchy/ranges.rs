@@ -38,7 +38,7 @@
 use glam::{DMat3, DVec3, DVec4};
 use perpend_kernel::Aabb;
 
-use super::convex::{CORRELATED, Curvature};
+use super::convex::Curvature;
 use super::form::{Coefficients, Shape, rounding_bound};
 use super::net::Layout;
 use super::newton::Domain;
@@ -81,8 +81,8 @@ impl Affine {
             let middle = (0.5 * (low[k] + high[k])) as f32;
             let extent = (high[k] - f64::from(middle)).max(f64::from(middle) - low[k]).max(0.0);
             affine.middle[k] = middle;
-            // above the extent, whichever way it was rounded
-            affine.extent[k] = (extent as f32).next_up();
+            // above the extent, whichever way it was rounded; of what is no number nothing is known
+            affine.extent[k] = if middle.is_nan() { f32::INFINITY } else { (extent as f32).next_up() };
         }
         affine
     }
@@ -96,6 +96,10 @@ pub(super) struct View {
     /// What pays for the rounding of a difference.
     rounding: f64,
 }
+
+/// Where weights are farther apart than this the margins of a rational leaf's boxes would leave nothing, and single precision may overflow: then no
+/// range is claimed. Leaves are split until their weights are 16 apart where there is room.
+const MOST_UNEVEN: f64 = 1e6;
 
 /// One direction of a leaf or of one of its edges.
 #[derive(Debug, Clone, Copy, Default)]
@@ -172,7 +176,20 @@ impl Ranges {
             radius,
             weights: (weights.1 / weights.0).powi(4),
         };
-        if leaf.rational { empty.rational(leaf, axes, radius, weights) } else { empty.polynomial(leaf, axes) }
+        if weights.1 > MOST_UNEVEN * weights.0 {
+            empty.unknown()
+        } else if leaf.rational {
+            empty.rational(leaf, axes, radius, weights)
+        } else {
+            empty.polynomial(leaf, axes)
+        }
+    }
+
+    /// Ranges that claim nothing.
+    fn unknown(self) -> Self {
+        let affine = Affine { middle: [0.0; 4], extent: [f32::INFINITY; 4] };
+        let along = Along { rise: affine, fall: affine, bend: affine };
+        Self { s: along, t: along, st: affine, edges_s: [along; 2], edges_t: [along; 2], ..self }
     }
 
     /// The query at `x` from the leaf's origin and at `y` along its axes.
@@ -215,13 +232,8 @@ impl Ranges {
             return (t > 0.0).then_some(Curvature { s: 0.0, t });
         }
         let (s, t) = (self.s.least_bend(view, self.m), self.t.least_bend(view, self.n));
-        if !(s > 0.0 && t > 0.0) {
-            return None;
-        }
         let (middle, extent) = self.st.at(view);
-        let mixed = middle.abs() + extent + self.m * self.n * view.rounding;
-        let rho = mixed / (s * t).sqrt();
-        (rho <= CORRELATED).then_some(Curvature { s: (1.0 - rho) * s, t: (1.0 - rho) * t })
+        Curvature::uncorrelated(s, t, middle.abs() + extent + self.m * self.n * view.rounding)
     }
 
     /// From the coefficients of a polynomial leaf's form.

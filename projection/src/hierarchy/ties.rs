@@ -24,6 +24,7 @@ use super::{Hierarchy, LocalSolution, ROUNDING, Workspace, holds, squared};
 use crate::answer::ParameterBox;
 use crate::query::Query;
 use crate::solver::Tie;
+use crate::tree::Candidate;
 
 /// Undecided boxes are split down to this share of the entity's size, or to the coincidence if that is more.
 const RESOLUTION: f64 = 1.0 / 64.0;
@@ -60,8 +61,8 @@ impl Hierarchy {
     /// The nearest points; none where nothing is within the query's `max_distance`.
     pub(crate) fn ties(&self, query: &Query, workspace: &mut Workspace) -> Option<TieSet> {
         let mut nearest = self.project(query, None, workspace)?;
-        let near = self.near(&nearest, query);
         let Workspace { candidates, lists, .. } = workspace;
+        let near = self.near(&nearest, query, candidates);
         let mut state = self.state(query, near, lists);
         let coincidence = self.coincidence(query);
         let reach = nearest.distance + state.goal.gap.max(self.asked_gap(query));
@@ -106,8 +107,8 @@ impl Hierarchy {
     }
 
     /// A solution as a foot of its leaf.
-    fn near(&self, solution: &LocalSolution, query: &Query) -> Foot {
-        let part = self.part(self.leaf_at(solution.u, solution.v));
+    fn near(&self, solution: &LocalSolution, query: &Query, found: &mut Vec<Candidate>) -> Foot {
+        let part = self.part(self.leaf_at(solution.u, solution.v, found));
         let x = self.frame.enter(query.point) - part.leaf.origin;
         part.foot(&newton::point(part.leaf, x, part.leaf.own_parameters(solution.u, solution.v)))
     }

@@ -38,14 +38,16 @@ pub(super) fn least_beside(
                 scratch[k] = (1.0 - at) * scratch[k] + at * scratch[k + 1];
             }
         }
-        slope = slope.max((scratch[1] - scratch[0]).abs());
-        floor = floor.min((1.0 - at) * scratch[0] + at * scratch[1]);
+        let (value, rise) = ((1.0 - at) * scratch[0] + at * scratch[1], (scratch[1] - scratch[0]).abs());
+        // a NaN must not be passed over: it proves nothing
+        if !(value.is_finite() && rise.is_finite()) {
+            return f64::NEG_INFINITY;
+        }
+        (floor, slope) = (floor.min(value), slope.max(rise));
     }
     let curvature = bend * (degree * (degree - 1)) as f64;
     let steepest = (slope + 2.0 * grown) * degree as f64;
-    let bound = floor - grown - steepest * steepest / (2.0 * curvature);
-    // the minima above pass over what is no number
-    if bound.is_finite() { bound } else { f64::NEG_INFINITY }
+    floor - grown - steepest * steepest / (2.0 * curvature)
 }
 
 #[cfg(test)]

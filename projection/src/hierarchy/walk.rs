@@ -60,13 +60,13 @@ impl Hierarchy {
     }
 
     /// The first look at a leaf, for a first upper bound; often its proof, too.
-    pub(super) fn visit_first(&self, query: &Query, index: u32, state: &mut State<'_>) -> Option<Visited> {
+    pub(super) fn visit_first(&self, query: &Query, index: u32, state: &mut State<'_>) -> Visited {
         let closed = glance::closes(self.part(index), true, state);
         // the gap that can be reached depends on the distance, which is better known now
         let goal = self.goal(query, &state.best);
         let closed = closed && goal.gap >= state.goal.gap;
         state.goal = goal;
-        Some(Visited { index, closed })
+        Visited { index, closed }
     }
 
     /// Proves every leaf that could hold a point nearer than `tau`, the nearest box first; then looks for feet in those that can
