@@ -89,13 +89,8 @@ pub(crate) fn low<const N: usize, const D: usize>(knots: &KnotVector, span: usiz
 pub(crate) fn low_on_curve<const N: usize, const D: usize>(knots: &KnotVector, span: usize, u: f64) -> [[f64; N]; D] {
     let t = &knots.as_slice()[span + 2 - N..span + N];
     let (start, end) = (t[N - 2], t[N - 1]);
-    // in a span so narrow that the square of its inverse overflows, quotients are taken one after the other
-    let is_wide = end - start > NARROW;
-    if is_wide && t[0] == start && t[2 * N - 3] == end { bernstein(start, end, u) } else { low(knots, span, u) }
+    if t[0] == start && t[2 * N - 3] == end { bernstein(start, end, u) } else { low(knots, span, u) }
 }
-
-/// Spans wider than this have an inverse whose square is finite.
-const NARROW: f64 = 1e-150;
 
 /// The Bernstein polynomials of degree `N - 1` from `start` to `end`, with derivatives as in [`low`].
 #[inline]

@@ -71,10 +71,8 @@ impl KnotVector {
         let domain = (knots[degree], knots[knots.len() - degree - 1]);
         let interior = knots.len() - 2 * (degree + 1);
         let mut vector = Self { degree, knots, domain, buckets: Vec::new(), density: 0.0 };
-        // in a domain so narrow that its inverse overflows, spans are found by stepping
-        let density = interior as f64 / (domain.1 - domain.0);
-        if interior > FEW && density.is_finite() {
-            vector.density = density;
+        if interior > FEW {
+            vector.density = interior as f64 / (domain.1 - domain.0);
             let mut buckets = vec![0; interior + 2];
             for knot in vector.interior() {
                 buckets[vector.bucket(*knot) + 1] += 1;
