@@ -3,7 +3,6 @@
 use std::mem::swap;
 
 use glam::{DVec3, DVec4};
-use smallvec::SmallVec;
 
 use super::newton::{self, Polished};
 use super::state::{Foot, State};
@@ -58,13 +57,13 @@ impl Hierarchy {
     }
 
     /// The feet that were met elsewhere and are as near as the best one within the gap, polished.
-    fn others(&self, best: &Settled, coincidence: f64, state: &mut State<'_>) -> SmallVec<[Settled; 2]> {
+    fn others(&self, best: &Settled, coincidence: f64, state: &mut State<'_>) -> Vec<Settled> {
         let near = best.distance() + state.goal.gap;
         let apart = |distance: f64, point: DVec3| distance <= near && point.distance(best.point) > coincidence;
         // two feet of one leaf that are this close in its parameters are one on its way to convergence
         let (s, t) = (best.polished.found.s, best.polished.found.t);
         let close = |foot: &Foot| foot.leaf == best.leaf && (foot.s - s).abs().max((foot.t - t).abs()) < 1e-2;
-        let mut others = SmallVec::new();
+        let mut others = Vec::new();
         for k in 0..state.met.len() {
             let foot = state.met[k];
             if apart(foot.distance, foot.point) && !close(&foot) {
