@@ -68,9 +68,15 @@ pub(super) fn square_error(leaf: &Leaf, d: f64) -> f64 {
 /// The error `e` of an evaluated point of the leaf.
 #[inline(always)]
 fn point_error(leaf: &Leaf) -> f64 {
+    let (c, rho) = roundings(leaf);
+    (2.0 * c * rho + 2.0) * ROUNDING * leaf.radius
+}
+
+/// The roundings `c` of an evaluation, and the ratio `rho` of the leaf's weights.
+#[inline(always)]
+fn roundings(leaf: &Leaf) -> (f64, f64) {
     let (p, q) = leaf.degree;
-    let c = (3 * (p + q) + 8) as f64;
-    (2.0 * c * leaf.heaviest / leaf.lightest + 2.0) * ROUNDING * leaf.radius
+    ((3 * (p + q) + 8) as f64, leaf.heaviest / leaf.lightest)
 }
 
 /// Error of the derivative `2 (S - x) · S_s`, `degree` being the leaf's in that direction.
@@ -79,8 +85,7 @@ fn point_error(leaf: &Leaf) -> f64 {
 /// `2 n u r rho (2 c + 2 c rho + 14)`, and the product by `8 u d |S_s|` more.
 #[inline(always)]
 fn slope_error(leaf: &Leaf, d: f64, derivative: DVec3, degree: usize) -> f64 {
-    let (p, q) = leaf.degree;
-    let (c, rho) = ((3 * (p + q) + 8) as f64, leaf.heaviest / leaf.lightest);
+    let (c, rho) = roundings(leaf);
     let error = 2.0 * degree as f64 * ROUNDING * leaf.radius * rho * (2.0 * c + 2.0 * c * rho + 14.0);
     2.0 * (d * error + derivative.length() * (point_error(leaf) + 4.0 * ROUNDING * d))
 }

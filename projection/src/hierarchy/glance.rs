@@ -7,7 +7,7 @@ use fearless_simd::{Simd, dispatch};
 
 use super::bound::{nearest_from, square_error};
 use super::certify::Part;
-use super::newton::{self, Domain, Search};
+use super::newton::{self, Search};
 use super::state::{Foot, State};
 
 /// How many points Newton's method may evaluate; where it needs more, the form tells more.
@@ -64,11 +64,4 @@ fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut Stat
     );
     part.offer(&found, state);
     closed
-}
-
-impl Domain {
-    /// The point that the box is, if it is one.
-    pub(super) fn corner(&self) -> Option<(f64, f64)> {
-        (self.s.0 == self.s.1 && self.t.0 == self.t.1).then_some((self.s.0, self.t.0))
-    }
 }

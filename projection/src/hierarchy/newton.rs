@@ -3,9 +3,11 @@
 
 use fearless_simd::{Simd, dispatch};
 use glam::DVec3;
+use perpend_kernel::Direction;
 
 use super::jet::Jet;
 use super::leaf::Leaf;
+use super::piece::middle;
 use super::state::Foot;
 use super::{ROUNDING, squared};
 use crate::statistics::Work;
@@ -38,6 +40,27 @@ impl Domain {
 
     pub(super) fn contains(&self, s: f64, t: f64) -> bool {
         self.clamp(s, t) == (s, t)
+    }
+
+    /// The point that the box is, if it is one.
+    pub(super) fn corner(&self) -> Option<(f64, f64)> {
+        (self.s.0 == self.s.1 && self.t.0 == self.t.1).then_some((self.s.0, self.t.0))
+    }
+
+    /// Both halves in a direction.
+    pub(super) fn halves(&self, direction: Direction) -> [Self; 2] {
+        let (mut low, mut high) = (*self, *self);
+        match direction {
+            Direction::U => {
+                low.s.1 = middle(self.s);
+                high.s.0 = low.s.1;
+            }
+            Direction::V => {
+                low.t.1 = middle(self.t);
+                high.t.0 = low.t.1;
+            }
+        }
+        [low, high]
     }
 }
 

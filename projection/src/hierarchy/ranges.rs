@@ -221,7 +221,6 @@ impl Ranges {
     #[inline(always)]
     pub(super) fn curvature(&self, view: &View, domain: &Domain) -> Option<Curvature> {
         let (along_s, along_t) = (domain.s.0 < domain.s.1, domain.t.0 < domain.t.1);
-        // not `<=`: a NaN must fail too
         if !along_t {
             let edge = if self.degree.1 == 0 { &self.s } else { &self.edges_s[domain.t.0 as usize] };
             let s = edge.least_bend(view, self.m);

@@ -1,13 +1,12 @@
 //! The walk over the leaves: which are proven, in which order, and what is done where the form alone does not prove one.
 
 use glam::DVec3;
-use perpend_kernel::Direction;
 
 use super::certify::{Memory, Outcome, Part, certify};
 use super::form::{rounding_bound, rounding_factor};
 use super::newton::Domain;
 use super::state::{Foot, Goal, State};
-use super::{Hierarchy, Lists, LocalSolution, REFINED_DEPTH, ROUNDING, glance, piece, squared};
+use super::{Hierarchy, Lists, LocalSolution, REFINED_DEPTH, ROUNDING, glance, squared};
 use crate::query::{DEFAULT_GAP, Query};
 use crate::statistics::Work;
 use crate::tree::Candidate;
@@ -162,23 +161,5 @@ impl Part<'_> {
         let guess = self.leaf.linear_guess(p - self.leaf.origin);
         let next = Domain::WHOLE.clamp(guess.0, guess.1);
         Foot { leaf: self.index, s, t, next, point, distance: point.distance(p) }
-    }
-}
-
-impl Domain {
-    /// Both halves in a direction.
-    fn halves(&self, direction: Direction) -> [Self; 2] {
-        let (mut low, mut high) = (*self, *self);
-        match direction {
-            Direction::U => {
-                low.s.1 = piece::middle(self.s);
-                high.s.0 = low.s.1;
-            }
-            Direction::V => {
-                low.t.1 = piece::middle(self.t);
-                high.t.0 = low.t.1;
-            }
-        }
-        [low, high]
     }
 }
