@@ -120,7 +120,12 @@ pub(crate) fn build(
         size = size_alone(&face.surface);
     }
     let apart = tolerance.min(COARSEST * size).max(RESOLUTION * size);
-    let carrier = Carrier::new(&face.surface, &samples, size, apart)?;
+    let mut carrier = Carrier::new(&face.surface, &samples, size, apart)?;
+    if !carrier.poles.is_empty() {
+        let off = |p: &glam::DVec3| carrier.point(carrier.inverse(*p, None)).distance(*p);
+        let off = samples.iter().step_by(4).map(off).fold(0.0, f64::max);
+        carrier.pole_tolerance = (2.0 * off).min(COARSEST * size).max(apart);
+    }
     let left = if carrier.normal_kept == face.same_sense { 1.0 } else { -1.0 };
     let mut rings: Vec<Ring> = Vec::new();
     for one in &face.loops {
@@ -136,14 +141,7 @@ pub(crate) fn build(
     if carrier.periods == [None; 2] && !rings.is_empty() {
         rings = nested(rings).into_iter().map(|(ring, _)| ring).collect();
     }
-    let mut off = 0.0_f64;
-    for piece in rings.iter().flat_map(|ring| &ring.pieces) {
-        if let Some(edge) = piece.edge {
-            for (t, at) in piece.t.iter().zip(&piece.at) {
-                off = off.max(carrier.point(*at).distance(own[edge].point(*t)));
-            }
-        }
-    }
+    let off = rings.iter().flat_map(|ring| &ring.pieces).fold(0.0_f64, |most, piece| most.max(piece.off));
     let opened = match open::open(&carrier, &own, rings.clone()) {
         // a file with its loops the wrong way round
         Err(FaceError::Unbounded) => {

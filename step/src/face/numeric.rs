@@ -193,6 +193,26 @@ impl Numeric {
         Some(DVec2::new(foot.parameter.u(), foot.parameter.v()?))
     }
 
+    /// A step that would leave the domain, made along the border that it would cross: normal equations with rows `[(right side, diagonal)]`
+    /// and `mixed` beside the diagonal.
+    fn along_border(&self, at: DVec2, step: DVec2, rows: [(f64, f64); 2], mixed: f64) -> DVec2 {
+        let domain = self.domain();
+        let mut step = step;
+        for k in 0..2 {
+            let (low, high) = domain[k];
+            let to = at[k] + step[k];
+            if !self.closed[k] && (to < low || to > high) {
+                step[k] = to.clamp(low, high) - at[k];
+                let (right, diagonal) = rows[1 - k];
+                let other = (right - mixed * step[k]) / diagonal;
+                if other.is_finite() {
+                    step[1 - k] = other;
+                }
+            }
+        }
+        step
+    }
+
     /// Where Gauss's steps lead from a start, and the distance there.
     fn newton(&self, p: DVec3, start: DVec2) -> (DVec2, f64) {
         let domain = self.domain();
@@ -216,10 +236,10 @@ impl Numeric {
             if !step.is_finite() {
                 break;
             }
-            let next = self.inside(best.0 + step);
+            let next = self.inside(best.0 + self.along_border(best.0, step, [(f, a), (g, c)], b));
             let distance = self.point(next).distance(p);
             // near the foot the distance no longer tells, and the step does
-            let size = (step / extent).abs().max_element();
+            let size = ((next - best.0) / extent).abs().max_element();
             if distance > best.1 && (size >= last || distance > best.1 * (1.0 + 1e-9) + 1e-3 * self.tolerance) {
                 break;
             }

@@ -29,10 +29,10 @@ pub(crate) fn area(surface: &NurbsSurface, loops: &[Vec<PlaneCurve>]) -> f64 {
         if width <= 0.0 {
             continue;
         }
-        for part in 0..6 {
+        for part in 0..40 {
             for (node, weight) in NODES {
-                let u = pair[0] + width * (f64::from(part) + node) / 6.0;
-                sum += weight * width / 6.0 * length(surface, &polygons, u);
+                let u = pair[0] + width * (f64::from(part) + node) / 40.0;
+                sum += weight * width / 40.0 * length(surface, &polygons, u);
             }
         }
     }
