@@ -46,7 +46,7 @@ pub(super) struct Flat {
 }
 
 impl Flat {
-    fn line(from: DVec2, to: DVec2, constant: [bool; 2], edge: Option<usize>) -> Self {
+    pub(super) fn line(from: DVec2, to: DVec2, constant: [bool; 2], edge: Option<usize>) -> Self {
         Self { degree: 1, knots: vec![0.0, 0.0, 1.0, 1.0], points: vec![from, to], weights: None, constant, edge }
     }
 
