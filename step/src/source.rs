@@ -8,13 +8,34 @@ use perpend::{Frame, NurbsCurve, NurbsSurface, Units};
 #[derive(Debug, Clone)]
 pub(crate) enum SourceSurface {
     Plane(Frame),
-    Cylinder { frame: Frame, radius: f64 },
+    Cylinder {
+        frame: Frame,
+        radius: f64,
+    },
     /// The radius is that at the frame's centre.
-    Cone { frame: Frame, radius: f64, half_angle: f64 },
-    Sphere { frame: Frame, radius: f64 },
-    Torus { frame: Frame, major: f64, minor: f64 },
-    Revolution { profile: SourceCurve, point: DVec3, axis: DVec3 },
-    Extrusion { profile: SourceCurve, direction: DVec3 },
+    Cone {
+        frame: Frame,
+        radius: f64,
+        half_angle: f64,
+    },
+    Sphere {
+        frame: Frame,
+        radius: f64,
+    },
+    Torus {
+        frame: Frame,
+        major: f64,
+        minor: f64,
+    },
+    Revolution {
+        profile: SourceCurve,
+        point: DVec3,
+        axis: DVec3,
+    },
+    Extrusion {
+        profile: SourceCurve,
+        direction: DVec3,
+    },
     /// Whole, as in the file; periodic ones clamped.
     Nurbs(NurbsSurface),
 }

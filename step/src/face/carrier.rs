@@ -68,6 +68,9 @@ impl Carrier {
             tolerance,
             pole_tolerance: tolerance,
         };
+        let positive = |what: &'static str, value: f64| {
+            if value > 0.0 && value.is_finite() { Ok(()) } else { Err(FaceError::Length { what, value }) }
+        };
         let frame = |frame: &Frame| Frame::new(frame.centre, frame.axis, frame.xdir);
         Ok(match surface {
             SourceSurface::Plane(given) => {
@@ -76,12 +79,16 @@ impl Carrier {
                 Self { normal_kept: true, ..carrier }
             }
             SourceSurface::Cylinder { frame: given, radius } => {
+                positive("radius", *radius)?;
                 let form = Form::Cylinder { frame: frame(given)?, radius: *radius };
                 let scale = DVec2::new(1.0, *radius);
                 analytic(form, [None, Some(TAU)], [NO_LIMIT; 2], Vec::new(), scale)
             }
             SourceSurface::Cone { frame: given, radius, half_angle } => {
                 let frame = frame(given)?;
+                if !(radius.is_finite() && *radius >= 0.0) {
+                    return Err(FaceError::Length { what: "radius", value: *radius });
+                }
                 if !(half_angle.abs() > 1e-9 && half_angle.abs() < FRAC_PI_2 - 1e-9) {
                     return Err(FaceError::HalfAngle(*half_angle));
                 }
@@ -94,17 +101,24 @@ impl Carrier {
                 analytic(form, [None, Some(TAU)], [limit, NO_LIMIT], vec![pole], scale)
             }
             SourceSurface::Sphere { frame: given, radius } => {
+                positive("radius", *radius)?;
                 let frame = frame(given)?;
-                let pole =
-                    |sign: f64| Pole { across: 0, value: sign * FRAC_PI_2, point: frame.centre + sign * *radius * frame.axis };
+                let pole = |sign: f64| Pole {
+                    across: 0,
+                    value: sign * FRAC_PI_2,
+                    point: frame.centre + sign * *radius * frame.axis,
+                };
                 let poles = vec![pole(-1.0), pole(1.0)];
                 let form = Form::Sphere { frame, radius: *radius };
                 let limits = [(-FRAC_PI_2, FRAC_PI_2), NO_LIMIT];
                 analytic(form, [None, Some(TAU)], limits, poles, DVec2::splat(*radius))
             }
             SourceSurface::Torus { frame: given, major, minor } => {
+                positive("major radius", *major)?;
+                positive("minor radius", *minor)?;
                 if minor > major {
-                    return Err(FaceError::SpindleTorus { major: *major, minor: *minor });
+                    let numeric = Numeric::spindle(&frame(given)?, *major, *minor, points, tolerance)?;
+                    return Ok(Self::numeric(numeric, false, tolerance));
                 }
                 let form = Form::Torus { frame: frame(given)?, major: *major, minor: *minor };
                 let scale = DVec2::new(*minor, major + minor);
@@ -127,7 +141,16 @@ impl Carrier {
         let periods = [0, 1].map(|k| numeric.closed[k].then(|| domain[k].1 - domain[k].0));
         let limits = [0, 1].map(|k| if numeric.closed[k] { NO_LIMIT } else { domain[k] });
         let (poles, scale) = (numeric.poles(), numeric.scale());
-        Self { form: Form::Numeric(numeric), periods, limits, poles, normal_kept, scale, tolerance, pole_tolerance: tolerance }
+        Self {
+            form: Form::Numeric(numeric),
+            periods,
+            limits,
+            poles,
+            normal_kept,
+            scale,
+            tolerance,
+            pole_tolerance: tolerance,
+        }
     }
 
     /// The coordinates of the surface's point nearest to `p`; where `near` is given, those of a point about there.

@@ -1,13 +1,13 @@
 //! Carriers without a closed form: B-splines, revolutions and extrusions.
 
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
 use perpend::kernel::{InvalidEdit, extrusion, revolution};
 use perpend::{
-    Circle, Definition, Direction, Ellipse, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface, Prepared,
-    Query, Scratch,
+    Circle, Definition, Direction, Ellipse, Frame, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface,
+    Prepared, Query, Scratch,
 };
 
 use super::FaceError;
@@ -69,7 +69,8 @@ impl Numeric {
                 } else {
                     let across = along - slope * unit;
                     let foot = origin - centre - start * unit;
-                    let (a, b, c) = (across.length_squared(), foot.dot(across), foot.length_squared() - distance * distance);
+                    let (a, b, c) =
+                        (across.length_squared(), foot.dot(across), foot.length_squared() - distance * distance);
                     let root = (b * b - a * c).max(0.0).sqrt();
                     // the half of the line that is seen from the origin of its parameter
                     let both = [(-b - root) / a, (-b + root) / a];
@@ -83,6 +84,32 @@ impl Numeric {
         };
         let profile = profile_curve(profile, extent)?;
         let surface = revolution(&profile, centre, axis, TAU)?;
+        Ok(Self { cropped: true, ..Self::new(surface, tolerance) })
+    }
+
+    /// One of the two shells of a torus that passes its own axis: the one on which the points lie.
+    pub(super) fn spindle(
+        frame: &Frame,
+        major: f64,
+        minor: f64,
+        points: &[DVec3],
+        tolerance: f64,
+    ) -> Result<Self, FaceError> {
+        // the tube's angle where it meets the axis
+        let meets = (-major / minor).acos();
+        let off = |centre: f64| -> f64 {
+            let one = |p: &DVec3| {
+                let (height, arm) = ((*p - frame.centre).dot(frame.axis), *p - frame.centre);
+                (((arm - height * frame.axis).length() - centre).hypot(height) - minor).abs()
+            };
+            points.iter().map(one).sum()
+        };
+        // beyond the axis the tube is seen from the other side, its centre there
+        let (centre, sweep) =
+            if off(major) <= off(-major) { (major, (-meets, meets)) } else { (-major, (meets - PI, PI - meets)) };
+        let tube = Frame::new(frame.centre + centre * frame.xdir, -frame.ydir(), frame.xdir)?;
+        let profile = Circle::new(tube, minor, sweep)?.to_nurbs()?;
+        let surface = revolution(&profile, frame.centre, frame.axis, TAU)?;
         Ok(Self { cropped: true, ..Self::new(surface, tolerance) })
     }
 
@@ -102,9 +129,7 @@ impl Numeric {
             parameters.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)))
         })?;
         let none = (f64::INFINITY, f64::NEG_INFINITY);
-        let range = |points: &[DVec3]| {
-            points.iter().map(|p| p.dot(unit)).fold(none, |(a, b), t| (a.min(t), b.max(t)))
-        };
+        let range = |points: &[DVec3]| points.iter().map(|p| p.dot(unit)).fold(none, |(a, b), t| (a.min(t), b.max(t)));
         let (of_face, of_profile) = (range(points), range(profile.control_points()));
         // whatever point of the profile the face's points are above
         let (low, high) = (of_face.0 - of_profile.1 - 1e-3 * size, of_face.1 - of_profile.0 + 1e-3 * size);
@@ -272,10 +297,7 @@ impl Numeric {
 }
 
 /// A profile as NURBS; of a line, the part that `extent` gives for its origin and unit direction.
-fn profile_curve(
-    profile: &SourceCurve,
-    extent: impl Fn(DVec3, DVec3) -> (f64, f64),
-) -> Result<NurbsCurve, FaceError> {
+fn profile_curve(profile: &SourceCurve, extent: impl Fn(DVec3, DVec3) -> (f64, f64)) -> Result<NurbsCurve, FaceError> {
     Ok(match profile {
         SourceCurve::Line { point, direction } => {
             let unit = direction.normalize_or_zero();
@@ -315,7 +337,11 @@ pub(super) fn cut_open(surface: &NurbsSurface, direction: Direction, at: f64) ->
 }
 
 /// One surface of two that meet along a line.
-fn joined(first: &NurbsSurface, second: &NurbsSurface, direction: Direction) -> Result<NurbsSurface, InvalidDefinition> {
+fn joined(
+    first: &NurbsSurface,
+    second: &NurbsSurface,
+    direction: Direction,
+) -> Result<NurbsSurface, InvalidDefinition> {
     let knots = |surface: &NurbsSurface, direction| surface.knots(direction).as_slice().to_vec();
     let degree = first.knots(direction).degree();
     let mut along = knots(first, direction);
@@ -359,7 +385,11 @@ fn joined(first: &NurbsSurface, second: &NurbsSurface, direction: Direction) -> 
 }
 
 /// The part of a surface between two parameters, as far as they lie in the domain.
-pub(super) fn part(surface: &NurbsSurface, direction: Direction, range: (f64, f64)) -> Result<NurbsSurface, InvalidEdit> {
+pub(super) fn part(
+    surface: &NurbsSurface,
+    direction: Direction,
+    range: (f64, f64),
+) -> Result<NurbsSurface, InvalidEdit> {
     let (first, last) = surface.domain(direction);
     let hair = 1e-9 * (last - first);
     let mut part = surface.clone();

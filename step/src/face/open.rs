@@ -29,15 +29,15 @@ pub(super) fn open(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -
     let mut opened = Opened { rings, full: [None; 2] };
     let winds = |rings: &[Ring], k: usize| rings.iter().any(|ring| ring.winding(carrier, k) != 0);
     let order = if winds(&opened.rings, 0) { [1, 0] } else { [0, 1] };
-    let is_bounded = (0..2).all(|k| carrier.periods[k].is_some() || carrier.limits[k].0.is_finite() && carrier.limits[k].1.is_finite());
-    let unbounded_by_rings = !winds(&opened.rings, 0)
-        && !winds(&opened.rings, 1)
-        && !opened.rings.iter().any(|ring| ring.area() > 0.0);
+    let is_bounded = (0..2)
+        .all(|k| carrier.periods[k].is_some() || carrier.limits[k].0.is_finite() && carrier.limits[k].1.is_finite());
+    let unbounded_by_rings =
+        !winds(&opened.rings, 0) && !winds(&opened.rings, 1) && !opened.rings.iter().any(|ring| ring.area() > 0.0);
     if unbounded_by_rings {
+        if opened.rings.is_empty() && !is_bounded {
+            return Err(FaceError::Unbounded);
+        }
         if carrier.periods == [None; 2] || !is_bounded {
-            if opened.rings.is_empty() {
-                return Err(FaceError::Unbounded);
-            }
             // a file with its loops the wrong way round: the largest bounds the material
             opened.rings = opened.rings.into_iter().map(Ring::reversed).collect();
         } else {
@@ -55,7 +55,9 @@ pub(super) fn open(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -
         let (rings, range) = gathered(carrier, opened.rings, k, period);
         opened.rings = rings;
         let hair = carrier.hair(k);
-        if let Some(seam) = seam(carrier, &opened.rings, k, period).filter(|_| range.1 - range.0 <= (1.0 + OVERSHOOT) * period) {
+        if let Some(seam) =
+            seam(carrier, &opened.rings, k, period).filter(|_| range.1 - range.0 <= (1.0 + OVERSHOOT) * period)
+        {
             opened.full[k] = Some((seam, seam + period));
         } else if range.1 - range.0 > period + 4.0 * hair {
             let at = cut_place(carrier, &opened.rings, k, period);
@@ -153,7 +155,8 @@ fn cut_place(carrier: &Carrier, rings: &[Ring], k: usize, period: f64) -> f64 {
             places.filter(|place| matches!(strip(place[k], at, period, hair), Strip::Line(_))).count()
         };
         let holes: usize = holes.map(|ring| crossings(ring, k, at, period, hair) + touches(ring)).sum();
-        let split: usize = rings.iter().flat_map(|ring| &ring.pieces).map(|piece| splits(piece, k, at, period, hair)).sum();
+        let split: usize =
+            rings.iter().flat_map(|ring| &ring.pieces).map(|piece| splits(piece, k, at, period, hair)).sum();
         (holes, all, split)
     };
     ends.chain(even).min_by_key(|at| cost(*at)).unwrap_or(base)
@@ -177,12 +180,11 @@ fn strip(x: f64, at: f64, period: f64, hair: f64) -> Strip {
 
 /// How often a ring goes from one strip to another.
 fn crossings(ring: &Ring, k: usize, at: f64, period: f64, hair: f64) -> usize {
-    let strips = ring.pieces.iter().flat_map(|piece| &piece.at).filter_map(|place| {
-        match strip(place[k], at, period, hair) {
+    let strips =
+        ring.pieces.iter().flat_map(|piece| &piece.at).filter_map(|place| match strip(place[k], at, period, hair) {
             Strip::Above(k) => Some(k),
             Strip::Line(_) => None,
-        }
-    });
+        });
     let strips: Vec<i64> = strips.collect();
     strips.windows(2).filter(|pair| pair[0] != pair[1]).count()
 }
@@ -238,7 +240,9 @@ fn cut(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>, k: usize, at:
     let linked = link(carrier, arcs, k, at, period)?;
     // slivers that the rounding of the cut left
     let largest = linked.iter().map(|ring| ring.area().abs()).fold(0.0, f64::max);
-    done.extend(linked.into_iter().filter(|ring| ring.winding(carrier, 1 - k) != 0 || ring.area().abs() > SLIVER * largest));
+    done.extend(
+        linked.into_iter().filter(|ring| ring.winding(carrier, 1 - k) != 0 || ring.area().abs() > SLIVER * largest),
+    );
     Ok(done)
 }
 

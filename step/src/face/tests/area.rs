@@ -48,7 +48,9 @@ fn polyline(curve: &PlaneCurve) -> Vec<DVec2> {
     let steps = if curve.degree() == 1 { 1 } else { (800 / spans.len() as u32).max(24) };
     spans
         .into_iter()
-        .flat_map(|span| (0..=steps).map(move |k| span.start + (span.end - span.start) * f64::from(k) / f64::from(steps)))
+        .flat_map(|span| {
+            (0..=steps).map(move |k| span.start + (span.end - span.start) * f64::from(k) / f64::from(steps))
+        })
         .map(|t| curve.point(t))
         .collect()
 }

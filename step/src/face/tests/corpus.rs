@@ -63,7 +63,8 @@ fn nurbs_surface(json: &Value) -> NurbsSurface {
     let weights = (!json["weights"].is_null()).then(|| rows(&json["weights"]).iter().map(numbers).collect());
     let degree = |key: &str| json[key].as_u64().expect("a degree") as usize;
     let degrees = (degree("degree_u"), degree("degree_v"));
-    NurbsSurface::new(degrees, (numbers(&json["knots_u"]), numbers(&json["knots_v"])), points, weights).expect("a surface")
+    NurbsSurface::new(degrees, (numbers(&json["knots_u"]), numbers(&json["knots_v"])), points, weights)
+        .expect("a surface")
 }
 
 fn curve(kind: &str, params: &Value, nurbs: impl Fn() -> NurbsCurve) -> SourceCurve {
@@ -110,7 +111,8 @@ fn edge(json: &Value) -> SourceEdge {
         curve: curve(json["origin_type"].as_str().expect("a type"), &json["origin_params"], || nurbs.clone()),
         start,
         end,
-        closed: start.distance(end) <= tolerance && nurbs.point(0.5 * (first + last)).distance(start) > 10.0 * tolerance,
+        closed: start.distance(end) <= tolerance
+            && nurbs.point(0.5 * (first + last)).distance(start) > 10.0 * tolerance,
         same_sense: true,
     }
 }
@@ -274,14 +276,23 @@ fn complaint(built: &BuiltFace, expected: &Expected, curves: &[NurbsCurve]) -> O
             seen += 1;
             inside += usize::from(is_inside);
             if is_inside && foot.distance > 1e-9 * size {
-                return Some(format!("a point of the face lies {:e} off the carrier, {:e} of its size", foot.distance, foot.distance / size));
+                return Some(format!(
+                    "a point of the face lies {:e} off the carrier, {:e} of its size",
+                    foot.distance,
+                    foot.distance / size
+                ));
             }
             if foot.distance > 1e-9 * size {
                 continue;
             }
             let at = DVec2::new(foot.parameter.u(), foot.parameter.v().expect("a surface"));
             if (trimming.region().side(at) == Side::Inside) != is_inside {
-                return Some(format!("the point of ({}, {}) should be {}", uv.x, uv.y, if is_inside { "inside" } else { "outside" }));
+                return Some(format!(
+                    "the point of ({}, {}) should be {}",
+                    uv.x,
+                    uv.y,
+                    if is_inside { "inside" } else { "outside" }
+                ));
             }
             let sign = |reversed: bool| if reversed { -1.0 } else { 1.0 };
             let mine = sign(built.reversed) * built.surface.normal(at.x, at.y).normalize_or_zero();
@@ -304,13 +315,16 @@ fn complaint(built: &BuiltFace, expected: &Expected, curves: &[NurbsCurve]) -> O
         return Some(format!("area {found}, {areas:?} expected ({inside} of {seen} points inside)"));
     }
     for (one, data) in loops.iter().zip(&built.loops) {
-        let signed: f64 = one.iter().flat_map(|curve| {
-            let (a, b) = curve.domain();
-            (0..64).map(move |k| {
-                let at = |k: i32| curve.point(a + (b - a) * f64::from(k) / 64.0);
-                0.5 * at(k).perp_dot(at(k + 1))
+        let signed: f64 = one
+            .iter()
+            .flat_map(|curve| {
+                let (a, b) = curve.domain();
+                (0..64).map(move |k| {
+                    let at = |k: i32| curve.point(a + (b - a) * f64::from(k) / 64.0);
+                    0.5 * at(k).perp_dot(at(k + 1))
+                })
             })
-        }).sum();
+            .sum();
         if (signed > 0.0) != data.outer {
             return Some("a loop runs the wrong way".to_owned());
         }
@@ -347,7 +361,8 @@ fn faces_of_real_models_are_those_of_another_kernel() {
         return;
     }
     let mut lost = Vec::new();
-    let mut folders: Vec<PathBuf> = std::fs::read_dir(&folder).expect("a folder").map(|one| one.expect("an entry").path()).collect();
+    let mut folders: Vec<PathBuf> =
+        std::fs::read_dir(&folder).expect("a folder").map(|one| one.expect("an entry").path()).collect();
     folders.sort();
     let only = std::env::var("PERPEND_MODEL").ok();
     for model in folders.iter().filter(|model| model.join("corpus.json").is_file()) {

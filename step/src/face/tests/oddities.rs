@@ -51,7 +51,8 @@ impl Sketch {
     }
 
     fn bound(mut self, uses: &[(usize, bool)]) -> Self {
-        let uses = uses.iter().map(|(edge, forward)| SourceUse { edge: *edge, forward: *forward, pcurve: None }).collect();
+        let uses =
+            uses.iter().map(|(edge, forward)| SourceUse { edge: *edge, forward: *forward, pcurve: None }).collect();
         self.loops.push(SourceLoop::Edges { outer: false, uses });
         self
     }
@@ -107,9 +108,11 @@ fn assert_near(found: f64, expected: f64) {
 /// The angles at which a cylinder, a sphere or a torus of a built face begins and ends.
 fn sweep(built: &BuiltFace) -> (f64, f64) {
     match built.shape {
-        Some(Shape::Cylinder(Cylinder { sweep, .. }) | Shape::Sphere(Sphere { sweep, .. }) | Shape::Torus(Torus { sweep, .. })) => {
-            sweep
-        }
+        Some(
+            Shape::Cylinder(Cylinder { sweep, .. })
+            | Shape::Sphere(Sphere { sweep, .. })
+            | Shape::Torus(Torus { sweep, .. }),
+        ) => sweep,
         _ => panic!("{:?}", built.shape),
     }
 }
@@ -352,8 +355,7 @@ fn a_torus_is_whole_or_between_two_circles_either_way() {
 fn loops_of_a_plane_may_be_named_wrong_and_run_wrong() {
     let mut sketch = Sketch::on(SourceSurface::Plane(raised(1.0)));
     let corners = [(0.0, 0.0), (4.0, 0.0), (4.0, 3.0), (0.0, 3.0)].map(|(x, y)| DVec3::new(x, y, 1.0));
-    let sides: Vec<(usize, bool)> =
-        (0..4).map(|k| (sketch.line(corners[k], corners[(k + 1) % 4]), true)).collect();
+    let sides: Vec<(usize, bool)> = (0..4).map(|k| (sketch.line(corners[k], corners[(k + 1) % 4]), true)).collect();
     let at = Frame { centre: DVec3::new(2.0, 1.5, 1.0), ..Frame::WORLD };
     let rim = sketch.arc(at, 1.0, (0.0, TAU));
     let backward: Vec<(usize, bool)> = sides.iter().rev().map(|(edge, _)| (*edge, false)).collect();
@@ -421,7 +423,8 @@ fn a_closed_spline_is_cut_open_over_the_box_of_its_face() {
     let (high_tail, high_head) = (sketch.nurbs(high_tail), sketch.nurbs(high_head));
     let left = sketch.line(surface.point(12.0, 0.25), surface.point(12.0, 0.75));
     let right = sketch.line(surface.point(2.0, 0.25), surface.point(2.0, 0.75));
-    let uses = [(low_tail, true), (low_head, true), (right, true), (high_head, false), (high_tail, false), (left, false)];
+    let uses =
+        [(low_tail, true), (low_head, true), (right, true), (high_head, false), (high_tail, false), (left, false)];
     let (built, trimming, area) = sketch.bound(&uses).built(1, 0);
     assert_near(area, whole);
     let domain = built.surface.domain(Direction::U);
@@ -453,7 +456,8 @@ fn a_carrier_far_larger_than_its_face_is_cut_down_or_kept() {
     assert!(built.surface.control_box().diagonal() < 4.5);
     let sheet = || {
         let grid = |k: i32| 500.0 * f64::from(k);
-        let points = (-2..=2).map(|i| (-2..=2).map(|j| DVec3::new(grid(i), grid(j), f64::from(i * j))).collect()).collect();
+        let points =
+            (-2..=2).map(|i| (-2..=2).map(|j| DVec3::new(grid(i), grid(j), f64::from(i * j))).collect()).collect();
         let knots = vec![0.0, 0.0, 0.0, 0.0, 0.5, 1.0, 1.0, 1.0, 1.0];
         NurbsSurface::new((3, 3), (knots.clone(), knots), points, None).expect("a sheet")
     };
@@ -461,17 +465,21 @@ fn a_carrier_far_larger_than_its_face_is_cut_down_or_kept() {
     let uv = [(0.5, 0.5), (0.501, 0.5), (0.501, 0.501), (0.5, 0.501)];
     let iso = |k: usize| {
         let (a, b) = (uv[k], uv[(k + 1) % 4]);
-        let points: Vec<DVec3> = (0..=8).map(|s| {
-            let s = f64::from(s) / 8.0;
-            sheet().point(a.0 + s * (b.0 - a.0), a.1 + s * (b.1 - a.1))
-        }).collect();
+        let points: Vec<DVec3> = (0..=8)
+            .map(|s| {
+                let s = f64::from(s) / 8.0;
+                sheet().point(a.0 + s * (b.0 - a.0), a.1 + s * (b.1 - a.1))
+            })
+            .collect();
         perpend::kernel::curve_through(&points, 3, perpend::kernel::Spacing::ChordLength).expect("a curve")
     };
     let uses: Vec<(usize, bool)> = (0..4).map(|k| (sketch.nurbs(iso(k)), true)).collect();
     let (built, trimming, _) = sketch.bound(&uses).built(1, 0);
     assert_eq!(built.surface, sheet());
     let (min, max) = trimming.region().bounds();
-    assert!((min - DVec2::splat(0.5)).abs().max_element() < 1e-8 && (max - DVec2::splat(0.501)).abs().max_element() < 1e-8);
+    assert!(
+        (min - DVec2::splat(0.5)).abs().max_element() < 1e-8 && (max - DVec2::splat(0.501)).abs().max_element() < 1e-8
+    );
 }
 
 #[test]
@@ -518,9 +526,7 @@ fn revolutions_and_extrusions_are_as_large_as_their_face() {
             }
             Some((from, to)) => {
                 let part = profile.split(0.25).expect("inside").1.split(0.75).expect("inside").0;
-                let at = |angle: f64| {
-                    part.transformed(&glam::DAffine3::from_rotation_z(angle)).expect("a turn")
-                };
+                let at = |angle: f64| part.transformed(&glam::DAffine3::from_rotation_z(angle)).expect("a turn");
                 let bottom = sketch.arc(raised(low.z), low.x, (from, to));
                 let top = sketch.arc(raised(high.z), high.x, (from, to));
                 let (left, right) = (sketch.nurbs(at(from)), sketch.nurbs(at(to)));
@@ -578,11 +584,104 @@ fn closed_curves_give_edges_over_their_own_seam() {
         }
     }
     let line = SourceCurve::Line { point: DVec3::ZERO, direction: DVec3::X };
-    let backward = SourceEdge { entity: 7, curve: line, start: DVec3::X, end: DVec3::ZERO, closed: false, same_sense: true };
+    let backward =
+        SourceEdge { entity: 7, curve: line, start: DVec3::X, end: DVec3::ZERO, closed: false, same_sense: true };
     assert!(matches!(edge_curve(&backward, TOLERANCE), Err(FaceError::Edge { entity: 7, .. })));
     let ok = SourceEdge { same_sense: false, ..backward };
     let expected = Line::new(DVec3::X, DVec3::ZERO).and_then(|line| line.to_nurbs()).expect("a line");
     assert_eq!(edge_curve(&ok, TOLERANCE).expect("an edge").control_points(), expected.control_points());
+}
+
+#[test]
+fn a_torus_that_passes_its_axis_is_one_of_its_shells() {
+    let (major, minor) = (1.0, 2.0_f64);
+    let meets = (-major / minor).acos();
+    // the outer shell, between two parallels
+    let ring = |angle: f64| (raised(minor * angle.sin()), (major + minor * angle.cos()).abs());
+    for (from, to, sign) in [(-1.0, 1.5, 1.0), (meets + 0.2, TAU - meets - 0.4, -1.0)] {
+        let mut sketch = Sketch::on(SourceSurface::Torus { frame: Frame::WORLD, major, minor });
+        let ((a, r), (b, s)) = (ring(from), ring(to));
+        let first = sketch.arc(a, r, (0.0, TAU));
+        let second = sketch.arc(b, s, (1.0, 1.0 + TAU));
+        let (_, _, area) = sketch.bound(&[(first, sign > 0.0)]).bound(&[(second, sign < 0.0)]).built(1, 0);
+        assert_near(area, sign * TAU * minor * (major * (to - from) + minor * (to.sin() - from.sin())));
+    }
+}
+
+#[test]
+fn a_spline_without_loops_is_whole() {
+    let (built, trimming, _) = Sketch::on(SourceSurface::Nurbs(tube())).built(1, 0);
+    assert_eq!(trimming.region().bounds(), (DVec2::ZERO, DVec2::new(14.0, 1.0)));
+    let part = tube().split(Direction::U, 7.0).expect("inside").0;
+    let (open, trimming, _) = Sketch::on(SourceSurface::Nurbs(part)).built(1, 0);
+    assert_eq!(trimming.region().bounds(), (DVec2::ZERO, DVec2::new(7.0, 1.0)));
+    assert_eq!((built.reversed, open.reversed), (false, false));
+}
+
+/// Numbers in `[0, 1)` from a seed.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[test]
+fn whatever_a_file_says_is_built_or_refused() {
+    let mut numbers = Numbers(7);
+    let surfaces = [
+        cylinder(),
+        SourceSurface::Plane(Frame::WORLD),
+        SourceSurface::Cone { frame: Frame::WORLD, radius: 1.0, half_angle: 0.6 },
+        SourceSurface::Sphere { frame: Frame::WORLD, radius: 2.0 },
+        SourceSurface::Torus { frame: Frame::WORLD, major: 2.0, minor: 1.0 },
+        SourceSurface::Torus { frame: Frame::WORLD, major: 1.0, minor: 2.0 },
+        SourceSurface::Nurbs(tube()),
+        SourceSurface::Revolution {
+            profile: SourceCurve::Line { point: DVec3::X, direction: DVec3::new(0.3, 0.1, 1.0) },
+            point: DVec3::ZERO,
+            axis: DVec3::Z,
+        },
+        SourceSurface::Extrusion {
+            profile: SourceCurve::Circle { frame: Frame::WORLD, radius: 2.0 },
+            direction: DVec3::Z,
+        },
+    ];
+    let (mut built, mut refused) = (0, 0);
+    for round in 0..3000 {
+        let mut sketch = Sketch::on(surfaces[round % surfaces.len()].clone());
+        sketch.same_sense = numbers.next() < 0.5;
+        // edges between places of a coarse lattice, so that many lie on axes, poles and one another
+        let mut place = || DVec3::from_array([0; 3].map(|_| (numbers.next() * 5.0).floor() - 2.0));
+        let corners: Vec<DVec3> = (0..4).map(|_| place()).collect();
+        for _ in 0..1 + (numbers.next() * 3.0) as usize {
+            let count = 1 + (numbers.next() * 4.0) as usize;
+            let uses: Vec<(usize, bool)> = (0..count)
+                .map(|k| {
+                    let (a, b) = (corners[k % 4], corners[(k + 1) % count % 4]);
+                    let frame = raised((numbers.next() * 4.0).floor() - 2.0);
+                    let edge = match (numbers.next() * 3.0) as usize {
+                        0 => sketch.line(a, b),
+                        1 => sketch.arc(frame, 0.5 + 2.0 * numbers.next(), (0.0, TAU)),
+                        _ => sketch.edge(SourceCurve::Circle { frame, radius: 2.0 }, a, b),
+                    };
+                    (edge, numbers.next() < 0.5)
+                })
+                .collect();
+            sketch = sketch.bound(&uses);
+        }
+        match sketch.build() {
+            Ok(face) => {
+                built += 1;
+                let points = face.loops.iter().flat_map(|one| &one.curves).flat_map(|(curve, _)| &curve.points);
+                assert!(points.into_iter().all(|point| point.is_finite()));
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    assert!(built > 100 && refused > 100, "{built} built, {refused} refused");
 }
 
 #[test]
