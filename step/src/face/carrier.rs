@@ -11,7 +11,7 @@ use perpend::{Frame, NurbsSurface};
 
 use super::FaceError;
 use super::numeric::Numeric;
-use crate::source::SourceSurface;
+use crate::source::{SourceCurve, SourceSurface};
 
 /// A surface and what is known of its coordinates.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ pub(super) enum Form {
     Cone { frame: Frame, radius: f64, half_angle: f64 },
     Sphere { frame: Frame, radius: f64 },
     Torus { frame: Frame, major: f64, minor: f64 },
-    Numeric(Numeric),
+    Numeric(Box<Numeric>),
 }
 
 const NO_LIMIT: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -117,7 +117,10 @@ impl Carrier {
                 positive("major radius", *major)?;
                 positive("minor radius", *minor)?;
                 if minor > major {
-                    let numeric = Numeric::spindle(&frame(given)?, *major, *minor, points, tolerance)?;
+                    let frame = frame(given)?;
+                    let tube = Frame::new(frame.centre + *major * frame.xdir, -frame.ydir(), frame.xdir)?;
+                    let profile = SourceCurve::Circle { frame: tube, radius: *minor };
+                    let numeric = Numeric::revolution(&profile, frame.centre, frame.axis, points, tolerance)?;
                     return Ok(Self::numeric(numeric, false, tolerance));
                 }
                 let form = Form::Torus { frame: frame(given)?, major: *major, minor: *minor };

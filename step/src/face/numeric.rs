@@ -1,6 +1,6 @@
 //! Carriers without a closed form: B-splines, revolutions and extrusions.
 
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
@@ -51,6 +51,11 @@ impl Numeric {
         points: &[DVec3],
         tolerance: f64,
     ) -> Result<Self, FaceError> {
+        if let SourceCurve::Circle { frame, radius } = profile
+            && let Some(shell) = Self::spindle((frame, *radius), centre, axis, points, tolerance)?
+        {
+            return Ok(shell);
+        }
         let unit = axis.normalize_or_zero();
         // a point of the profile has the distance from the axis and the height of a point of the surface
         let polar = |p: DVec3| {
@@ -87,30 +92,43 @@ impl Numeric {
         Ok(Self { cropped: true, ..Self::new(surface, tolerance) })
     }
 
-    /// One of the two shells of a torus that passes its own axis: the one on which the points lie.
+    /// A circle turned about an axis that it crosses: one of the two shells, the one on which the points lie.
+    ///
+    /// None where the circle does not cross the axis, or does not lie in a plane with it.
     pub(super) fn spindle(
-        frame: &Frame,
-        major: f64,
-        minor: f64,
+        circle: (&Frame, f64),
+        centre: DVec3,
+        axis: DVec3,
         points: &[DVec3],
         tolerance: f64,
-    ) -> Result<Self, FaceError> {
-        // the tube's angle where it meets the axis
-        let meets = (-major / minor).acos();
-        let off = |centre: f64| -> f64 {
+    ) -> Result<Option<Self>, FaceError> {
+        let ((frame, radius), unit) = (circle, axis.normalize_or_zero());
+        let arm = frame.centre - centre;
+        // the direction away from the axis in the circle's plane, and the circle's centre along it
+        let out = unit.cross(frame.axis);
+        let (along, beside) = (arm.dot(out), arm.dot(frame.axis));
+        if unit.dot(frame.axis).abs() > 1e-9 || beside.abs() > tolerance || along.abs() >= radius - tolerance {
+            return Ok(None);
+        }
+        let outermost = out.dot(frame.ydir()).atan2(out.dot(frame.xdir));
+        let meets = (-along / radius).acos();
+        let middle = arm.dot(unit);
+        let off = |along: f64| -> f64 {
             let one = |p: &DVec3| {
-                let (height, arm) = ((*p - frame.centre).dot(frame.axis), *p - frame.centre);
-                (((arm - height * frame.axis).length() - centre).hypot(height) - minor).abs()
+                let height = (*p - centre).dot(unit);
+                let distance = (*p - centre - height * unit).length();
+                ((distance - along).hypot(height - middle) - radius).abs()
             };
             points.iter().map(one).sum()
         };
-        // beyond the axis the tube is seen from the other side, its centre there
-        let (centre, sweep) =
-            if off(major) <= off(-major) { (major, (-meets, meets)) } else { (-major, (meets - PI, PI - meets)) };
-        let tube = Frame::new(frame.centre + centre * frame.xdir, -frame.ydir(), frame.xdir)?;
-        let profile = Circle::new(tube, minor, sweep)?.to_nurbs()?;
-        let surface = revolution(&profile, frame.centre, frame.axis, TAU)?;
-        Ok(Self { cropped: true, ..Self::new(surface, tolerance) })
+        let sweep = if off(along) <= off(-along) {
+            (outermost - meets, outermost + meets)
+        } else {
+            (outermost + meets, outermost + TAU - meets)
+        };
+        let profile = Circle::new(*frame, radius, sweep)?.to_nurbs()?;
+        let surface = revolution(&profile, centre, axis, TAU)?;
+        Ok(Some(Self { cropped: true, ..Self::new(surface, tolerance) }))
     }
 
     /// The profile (u) moved along the direction (v), as far as the face's points reach.

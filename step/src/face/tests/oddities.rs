@@ -596,14 +596,14 @@ fn closed_curves_give_edges_over_their_own_seam() {
 fn a_torus_that_passes_its_axis_is_one_of_its_shells() {
     let (major, minor) = (1.0, 2.0_f64);
     let meets = (-major / minor).acos();
-    // the outer shell, between two parallels
+    // the outer shell between two parallels, then the inner one
     let ring = |angle: f64| (raised(minor * angle.sin()), (major + minor * angle.cos()).abs());
     for (from, to, sign) in [(-1.0, 1.5, 1.0), (meets + 0.2, TAU - meets - 0.4, -1.0)] {
         let mut sketch = Sketch::on(SourceSurface::Torus { frame: Frame::WORLD, major, minor });
         let ((a, r), (b, s)) = (ring(from), ring(to));
         let first = sketch.arc(a, r, (0.0, TAU));
         let second = sketch.arc(b, s, (1.0, 1.0 + TAU));
-        let (_, _, area) = sketch.bound(&[(first, sign > 0.0)]).bound(&[(second, sign < 0.0)]).built(1, 0);
+        let (_, _, area) = sketch.bound(&[(first, true)]).bound(&[(second, false)]).built(1, 0);
         assert_near(area, sign * TAU * minor * (major * (to - from) + minor * (to.sin() - from.sin())));
     }
 }
