@@ -3,6 +3,7 @@
 //! [`read`] gives what a file says of its part as plain data, a [`SourcePart`]: faces with their surfaces, loops and edges, placed
 //! where the assembly puts them, all lengths in one unit. What it did not understand is listed in [`SourcePart::not_understood`].
 
+mod face;
 mod read;
 mod source;
 

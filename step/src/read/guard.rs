@@ -41,12 +41,17 @@ const STACK: usize = 64 << 20;
 ///
 /// As [`read`], or the file cannot be opened.
 pub fn read_file(path: &Path, options: &ReadOptions) -> Result<SourcePart, ReadError> {
+    read(read_bytes(path, options)?, options)
+}
+
+/// The bytes of a file, if it is not larger than allowed.
+pub(crate) fn read_bytes(path: &Path, options: &ReadOptions) -> Result<Vec<u8>, ReadError> {
     let file = File::open(path)?;
     check_size(file.metadata()?.len(), options)?;
     let mut bytes = Vec::new();
     // one byte more than allowed, so that a file without a known length is refused too
     file.take(options.max_bytes.saturating_add(1)).read_to_end(&mut bytes)?;
-    read(bytes, options)
+    Ok(bytes)
 }
 
 /// Reads the bytes of a STEP file.
