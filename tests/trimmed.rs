@@ -2,7 +2,15 @@
 
 mod common;
 
+#[path = "trimmed/case.rs"]
+mod case;
 #[path = "trimmed/faces.rs"]
 mod faces;
 #[path = "trimmed/oracle_itself.rs"]
 mod oracle_itself;
+#[path = "trimmed/random.rs"]
+mod random;
+#[path = "trimmed/stories.rs"]
+mod stories;
+#[path = "trimmed/sweeps.rs"]
+mod sweeps;

@@ -8,6 +8,7 @@ pub mod corpus;
 pub mod disguise;
 pub mod double_double;
 pub mod exact;
+pub mod face_judgement;
 pub mod face_oracle;
 pub mod judgement;
 pub mod kinds;
