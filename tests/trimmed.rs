@@ -6,6 +6,8 @@ mod common;
 mod case;
 #[path = "trimmed/faces.rs"]
 mod faces;
+#[path = "trimmed/hard_points.rs"]
+mod hard_points;
 #[path = "trimmed/oracle_itself.rs"]
 mod oracle_itself;
 #[path = "trimmed/random.rs"]

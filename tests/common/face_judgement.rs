@@ -25,7 +25,7 @@ pub enum FaceFault {
     OffSurface,
     /// `distance` is not the distance of `point`.
     DishonestDistance,
-    /// `place` says trim edge or vertex, and the foot lies elsewhere; or says nothing of a foot on the boundary.
+    /// `place` says trim edge or vertex, and the foot lies elsewhere.
     WrongPlace,
 }
 
@@ -68,7 +68,6 @@ pub fn judge_on_face(
     let place = match foot.place {
         Place::TrimEdge => from_outline <= OUTSIDE,
         Place::Vertex => oracle.outline.distance_to_ends(uv) <= OUTSIDE,
-        Place::Interior | Place::Crease | Place::Cusp => side != Verdict::Beside,
         _ => true,
     };
     let fault = if is_false_bound(foot.lower_bound, real, size) {
