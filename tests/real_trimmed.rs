@@ -151,8 +151,7 @@ fn no_claim_of_another_kernel_is_nearer_beyond_the_trims_tolerance() {
                 continue;
             }
             nearer += 1;
-            let oracle =
-                oracles.entry(face.id).or_insert_with(|| FaceOracle::new(&face.surface, &face.trimming));
+            let oracle = oracles.entry(face.id).or_insert_with(|| FaceOracle::new(&face.surface, &face.trimming));
             let uv = DVec2::new(foot.parameter.u(), foot.parameter.v().expect("a surface"));
             let is_there = (face.surface.point(uv.x, uv.y).distance(row.point) - foot.distance).abs() <= allowed;
             let is_inside = oracle.outline.side(uv) != Verdict::Outside || oracle.outline.distance(uv) <= OUTSIDE;
@@ -160,7 +159,9 @@ fn no_claim_of_another_kernel_is_nearer_beyond_the_trims_tolerance() {
                 failures.push(format!("{}: nearer by {:e} outside the trims", told(), claim - foot.distance));
             }
         }
-        eprintln!("{name}: {agreed} claims met, {nearer} beaten by a point of the face; farthest beyond a claim {worst:e}");
+        eprintln!(
+            "{name}: {agreed} claims met, {nearer} beaten by a point of the face; farthest beyond a claim {worst:e}"
+        );
     }
     let shown = failures.iter().take(20).cloned().collect::<Vec<_>>().join("\n");
     assert!(failures.is_empty(), "{} failures\n{shown}", failures.len());
@@ -197,7 +198,7 @@ fn asked(face: &Face, oracle: &FaceOracle, points: &[DVec3], table: &mut Table, 
                 *table.faults.entry(fault).or_default() += 1;
                 format!("{fault:?}")
             }
-            None if !judged.certified => {
+            None if !judged.is_proven => {
                 table.uncertified += 1;
                 format!("not certified, gap {:e}", foot.gap())
             }
@@ -229,7 +230,8 @@ fn nothing_that_the_oracle_finds_is_nearer() {
         let mut table = Table::default();
         let mut told = Vec::new();
         for i in 0..asked_faces {
-            let face = &faces[(i * faces.len() / asked_faces + random.count(0, faces.len() / asked_faces)) % faces.len()];
+            let face =
+                &faces[(i * faces.len() / asked_faces + random.count(0, faces.len() / asked_faces)) % faces.len()];
             let oracle = FaceOracle::new(&face.surface, &face.trimming);
             let points = hard_points(&oracle, &face.surface, &[], each, &mut random);
             asked(face, &oracle, &points, &mut table, &mut told);
@@ -237,7 +239,9 @@ fn nothing_that_the_oracle_finds_is_nearer() {
         let Table { queries, faults, uncertified, worst, mut slowest } = table;
         slowest.sort_by(|a, b| b.0.cmp(&a.0));
         slowest.truncate(3);
-        eprintln!("{name}: {queries} queries of {asked_faces} faces, faults {faults:?}, {uncertified} not certified, worst excess {worst:e} of the size");
+        eprintln!(
+            "{name}: {queries} queries of {asked_faces} faces, faults {faults:?}, {uncertified} not certified, worst excess {worst:e} of the size"
+        );
         for (time, face) in slowest {
             eprintln!("    {time:?} for a query of {face}");
         }

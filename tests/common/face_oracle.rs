@@ -53,10 +53,7 @@ impl FaceOracle {
     pub fn new(surface: &NurbsSurface, trimming: &Trimming) -> Self {
         let outline = Outline::new(surface, trimming.loops());
         let (low, high) = outline.bounds();
-        let grid = [
-            samples(surface, Direction::U, low.x, high.x),
-            samples(surface, Direction::V, low.y, high.y),
-        ];
+        let grid = [samples(surface, Direction::U, low.x, high.x), samples(surface, Direction::V, low.y, high.y)];
         let mut inside = Vec::with_capacity(grid[0].len() * grid[1].len());
         for u in &grid[0] {
             for v in &grid[1] {
@@ -273,10 +270,8 @@ fn samples(surface: &NurbsSurface, direction: Direction, low: f64, high: f64) ->
         .collect();
     let most = 3 * ACROSS;
     let each = (ACROSS / spans.len().max(1)).clamp(2, ACROSS).min(most.div_ceil(spans.len().max(1)));
-    let mut at: Vec<f64> = spans
-        .iter()
-        .flat_map(|(a, b)| (0..each).map(move |k| a + (b - a) * (k as f64 / each as f64)))
-        .collect();
+    let mut at: Vec<f64> =
+        spans.iter().flat_map(|(a, b)| (0..each).map(move |k| a + (b - a) * (k as f64 / each as f64))).collect();
     // far more spans than samples: a share of them
     if at.len() > most {
         let step = at.len() as f64 / most as f64;

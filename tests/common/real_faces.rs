@@ -31,18 +31,30 @@ pub fn faces(folder: &Path) -> Vec<RealFace> {
         .map(|(json, entry)| {
             let trims = &json["trims"];
             let loops = trims["loops"].as_array().expect("a list of loops");
-            let gap = loops.iter().filter_map(|one| one["closed_gap"].as_f64()).fold(0.0, f64::max);
+            let loops: Vec<TrimLoopData> = loops.iter().map(trim_loop).collect();
             let promised = trims["edge_tolerance"].as_f64().unwrap_or(0.0);
-            let tolerance = promised.max(gap).max(json["tolerance"].as_f64().unwrap_or(0.0));
-            let trimming = TrimmingData {
-                reversed: json["orientation"] == "reversed",
-                tolerance,
-                loops: loops.iter().map(trim_loop).collect(),
-            };
+            let gap = loops.iter().map(|one| widest_gap(one, &entry.shape)).fold(0.0, f64::max);
+            let tolerance = promised.max(1.001 * gap).max(json["tolerance"].as_f64().unwrap_or(0.0));
+            let trimming = TrimmingData { reversed: json["orientation"] == "reversed", tolerance, loops };
             let trim_tolerance = tolerance.max(trims["dev"].as_f64().unwrap_or(0.0));
             RealFace { id: entry.id, name: entry.name, shape: entry.shape, trimming, trim_tolerance }
         })
         .collect()
+}
+
+/// How far apart in space the ends of neighbouring p-curves are at most. The file's own `closed_gap` is a length in the parameter plane.
+fn widest_gap(one: &TrimLoopData, shape: &Shape) -> f64 {
+    let inside = |uv: DVec2| [0, 1].map(|k| uv[k].clamp(shape.domain(k)[0], shape.domain(k)[1]));
+    let point = |uv: DVec2| {
+        let [u, v] = inside(uv);
+        shape.point(u, v)
+    };
+    let count = one.curves.len();
+    let gap = |k: usize| {
+        let (before, this) = (&one.curves[k].points, &one.curves[(k + 1) % count].points);
+        point(before[before.len() - 1]).distance(point(this[0]))
+    };
+    (0..count).map(gap).fold(0.0, f64::max)
 }
 
 fn trim_loop(json: &Value) -> TrimLoopData {

@@ -39,12 +39,17 @@ impl Case {
         let again = self.prepared.project(&query, &mut Scratch::default()).expect("no limit");
         let judged = judge_on_face(&self.oracle, &self.face.surface, p, &foot, gap, real);
         let name = &self.face.name;
-        let told = || format!("{name} at {p:?}: a point of the face is at {:e}, outline at {:e}", judged.real, judged.from_outline);
+        let told = || {
+            format!(
+                "{name} at {p:?}: a point of the face is at {:e}, outline at {:e}",
+                judged.real, judged.from_outline
+            )
+        };
         let wrong = if !is_same(&foot, &again) {
             Some(format!("{}: two answers: {foot:?}, {again:?}", told()))
         } else if let Some(fault) = judged.fault {
             Some(format!("{}: {fault:?} by {:e}: {foot:?}", told(), foot.distance - judged.real))
-        } else if !judged.certified {
+        } else if !judged.is_proven {
             Some(format!("{}: not certified, gap {:e}: {foot:?}", told(), foot.gap()))
         } else {
             None

@@ -255,11 +255,8 @@ pub(crate) fn plate_with_slots() -> Face {
 
 pub(crate) fn island_in_a_hole() -> Face {
     let middle = dvec2(5.0, 3.0);
-    let loops = vec![
-        rectangle(true, DVec2::ZERO, dvec2(10.0, 6.0)),
-        circle(false, middle, 2.5),
-        circle(true, middle, 1.0),
-    ];
+    let loops =
+        vec![rectangle(true, DVec2::ZERO, dvec2(10.0, 6.0)), circle(false, middle, 2.5), circle(true, middle, 1.0)];
     let special = [dvec3(5.0, 3.0, 1.0), dvec3(6.75, 3.0, 0.0), dvec3(6.75, 3.0, 0.5)];
     Face::new("island in a hole", plane(10.0, 6.0), loops).with_special(&special)
 }
@@ -321,15 +318,14 @@ pub(crate) fn window_in_a_cylinder() -> Face {
 
 pub(crate) fn cap() -> Face {
     let loops = vec![rectangle(true, dvec2(0.75, 0.0), DVec2::ONE)];
-    let special = [DVec3::ZERO, dvec3(0.0, 0.0, 5.0), dvec3(0.0, 0.0, 2.0), dvec3(0.0, 0.0, -3.0), dvec3(1e-9, 0.0, 1.0)];
+    let special =
+        [DVec3::ZERO, dvec3(0.0, 0.0, 5.0), dvec3(0.0, 0.0, 2.0), dvec3(0.0, 0.0, -3.0), dvec3(1e-9, 0.0, 1.0)];
     Face::new("cap about a pole", sphere(2.0), loops).with_special(&special)
 }
 
 pub(crate) fn cap_with_a_window() -> Face {
-    let loops = vec![
-        rectangle(true, dvec2(0.6, 0.0), DVec2::ONE),
-        ellipse(false, dvec2(0.85, 0.4), dvec2(0.1, 0.25), 4),
-    ];
+    let loops =
+        vec![rectangle(true, dvec2(0.6, 0.0), DVec2::ONE), ellipse(false, dvec2(0.85, 0.4), dvec2(0.1, 0.25), 4)];
     Face::new("cap with a window", sphere(2.0), loops).with_special(&[DVec3::ZERO, dvec3(0.0, 0.0, 4.0)])
 }
 
@@ -345,11 +341,10 @@ pub(crate) fn sector_of_a_cone() -> Face {
 }
 
 pub(crate) fn patch_of_a_torus() -> Face {
-    let loops = vec![
-        rectangle(true, dvec2(0.1, 0.05), dvec2(0.9, 0.95)),
-        ellipse(false, dvec2(0.5, 0.5), dvec2(0.25, 0.1), 4),
-    ];
-    let special = [DVec3::ZERO, dvec3(-3.0, 0.0, 0.0), dvec3(0.0, 3.0, 0.0), dvec3(0.0, 0.0, 1.0), dvec3(4.5, 0.0, 0.0)];
+    let loops =
+        vec![rectangle(true, dvec2(0.1, 0.05), dvec2(0.9, 0.95)), ellipse(false, dvec2(0.5, 0.5), dvec2(0.25, 0.1), 4)];
+    let special =
+        [DVec3::ZERO, dvec3(-3.0, 0.0, 0.0), dvec3(0.0, 3.0, 0.0), dvec3(0.0, 0.0, 1.0), dvec3(4.5, 0.0, 0.0)];
     Face::new("patch of a torus", torus(3.0, 1.0), loops).with_special(&special)
 }
 

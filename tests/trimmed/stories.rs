@@ -1,7 +1,7 @@
 //! Failures that users of other kernels report of trimmed faces, and places where a foot is easily lost.
 
 use glam::{DVec2, DVec3, dvec2, dvec3};
-use perpend::Place;
+use perpend::{Place, Scratch};
 
 use super::case::Case;
 use super::faces::{self, Face, circle, polygon, rectangle};
@@ -122,6 +122,38 @@ fn feet_on_the_outline_belong_to_the_face() {
     }
 }
 
+/// The corner at which a loop begins is where it ends; its parameter along the whole boundary must not be taken for the beginning of the next loop.
+#[test]
+fn the_corner_that_closes_a_loop_is_met_though_another_loop_follows() {
+    let loops = vec![rectangle(true, DVec2::ZERO, dvec2(4.0, 4.0)), rectangle(false, DVec2::ONE, DVec2::splat(2.0))];
+    let case = Case::new(Face::new("square with a square hole", faces::plane(4.0, 4.0), loops));
+    for k in 1..=20 {
+        let p = dvec3(-0.37, -0.31, -0.43) * f64::from(k);
+        let foot = case.foot_at(p, p.length());
+        assert_eq!(foot.place, Place::Vertex, "{foot:?}");
+    }
+    let seen = Case::new(faces::window_in_a_cylinder());
+    let outline = seen.face.surface.point(0.7, 0.125);
+    seen.foot_at(outline, 0.0);
+    seen.foot(seen.face.surface.point(0.8, 0.5));
+}
+
+/// A p-curve along the border of the domain: no rounding of its points leaves the domain. The numbers are those of a wind turbine's blade.
+#[test]
+fn feet_on_the_border_of_the_domain_lie_in_the_domain() {
+    let (width, height) = (0.164763226097204, 117.589976972617);
+    let wave = |i: usize, j: usize| dvec3(width * i as f64, height / 3.0 * j as f64, [0.0, 0.1, -0.1, 0.2][j]);
+    let surface = faces::carrier(1, [2, 4], dvec2(width, height), |i, j| (wave(i, j), 1.0));
+    let whole = rectangle(true, DVec2::ZERO, dvec2(width, height));
+    let case = Case::new(Face::new("blade", surface, vec![whole]));
+    for k in 0..400 {
+        let v = height * f64::from(k) / 401.0;
+        let edge = case.face.surface.point(width, v);
+        case.foot_at(edge, 0.0);
+        case.foot_at(edge + DVec3::X, 1.0);
+    }
+}
+
 /// Loops that only touch, and a hole that touches the outer loop.
 #[test]
 fn touching_loops_are_answered() {
@@ -136,6 +168,31 @@ fn touching_loops_are_answered() {
     case.foot_at(dvec3(2.5, 3.0, 1.0), 0.5_f64.hypot(1.0));
     case.foot_at(dvec3(8.0, 5.5, 0.0), 0.5);
     case.foot_at(dvec3(10.0, 4.0, 0.5), 0.5);
+}
+
+/// A hair off the rim of a curved face, the proof must reach the gap too.
+#[test]
+fn beside_a_curved_rim_the_gap_is_reached() {
+    for face in [faces::ring_of_a_saddle(), faces::creased_disc(), faces::stamp_on_a_sheet(), faces::valley_cut_away()]
+    {
+        let case = Case::new(face);
+        let rim: Vec<DVec3> = case.oracle.rim_points().collect();
+        let middle = rim.iter().sum::<DVec3>() / rim.len() as f64;
+        let size = rim[0].distance(middle);
+        let mut lost = Vec::new();
+        for (k, at) in rim.iter().step_by(rim.len() / 12).enumerate() {
+            for decade in -9..=-2 {
+                let way = dvec3((k as f64).cos(), (k as f64).sin(), 0.6);
+                let p = *at + size * 10.0_f64.powi(decade) * way;
+                let (foot, wrong) = case.ask(p, case.oracle.nearest(p).distance, &mut Scratch::default());
+                if let Some(wrong) = wrong {
+                    lost.push((decade, foot.gap(), wrong));
+                }
+            }
+        }
+        let decades: Vec<(i32, f64)> = lost.iter().map(|(decade, gap, _)| (*decade, *gap)).collect();
+        assert!(lost.is_empty(), "{} lost, by decade of the distance and gap: {decades:?}; {}", lost.len(), lost[0].2);
+    }
 }
 
 /// A p-curve over many knots of a wavy carrier, and trims through its creases.

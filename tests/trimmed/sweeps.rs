@@ -88,4 +88,3 @@ fn the_sense_of_loops_and_the_exchange_of_parameters_change_no_distance() {
         }
     }
 }
-
