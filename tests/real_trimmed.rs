@@ -237,7 +237,7 @@ fn nothing_that_the_oracle_finds_is_nearer() {
             asked(face, &oracle, &points, &mut table, &mut told);
         }
         let Table { queries, faults, uncertified, worst, mut slowest } = table;
-        slowest.sort_by(|a, b| b.0.cmp(&a.0));
+        slowest.sort_by_key(|(time, _)| std::cmp::Reverse(*time));
         slowest.truncate(3);
         eprintln!(
             "{name}: {queries} queries of {asked_faces} faces, faults {faults:?}, {uncertified} not certified, worst excess {worst:e} of the size"

@@ -75,7 +75,10 @@ pub fn judge_on_face(
         Place::Vertex => oracle.outline.distance_to_ends(uv) <= OUTSIDE,
         _ => true,
     };
-    let fault = if is_false_bound(foot.lower_bound, real, size) {
+    // points of the outline are told to the grain of the parameters: by so much the named one may lie outside
+    let is_false = is_false_bound(foot.lower_bound, real, size)
+        && (side != Verdict::Beside || is_false_bound(foot.lower_bound, real + two_ulps(shape, [uv.x, uv.y]), size));
+    let fault = if is_false {
         Some(FaceFault::FalseBound)
     } else if foot.distance > real + gap + allowed {
         Some(FaceFault::WrongFoot)

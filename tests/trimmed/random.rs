@@ -67,9 +67,9 @@ fn face() -> impl Strategy<Value = (Definition, Vec<TrimLoopData>)> {
 }
 
 proptest! {
-    #![proptest_config(config(250))]
+    #![proptest_config(config(120))]
 
-    /// Twelve points of all kinds about a random face.
+    /// Points of all kinds about a random face.
     #[test]
     fn no_point_of_a_random_face_is_nearer((definition, loops) in face(), seed in 0..1_000_000u64) {
         let Definition::NurbsSurface(surface) = definition else { unreachable!("the strategy makes surfaces") };

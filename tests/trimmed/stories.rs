@@ -5,6 +5,7 @@ use perpend::{Place, Scratch};
 
 use super::case::Case;
 use super::faces::{self, Face, circle, polygon, rectangle};
+use crate::common::random::Random;
 
 /// cadrum: from far above a cube, a face's foot fell outside its trims, and the query panicked.
 #[test]
@@ -125,11 +126,18 @@ fn feet_on_the_outline_belong_to_the_face() {
 /// The corner at which a loop begins is where it ends; its parameter along the whole boundary must not be taken for the beginning of the next loop.
 #[test]
 fn the_corner_that_closes_a_loop_is_met_though_another_loop_follows() {
-    let loops = vec![rectangle(true, DVec2::ZERO, dvec2(4.0, 4.0)), rectangle(false, DVec2::ONE, DVec2::splat(2.0))];
-    let case = Case::new(Face::new("square with a square hole", faces::plane(4.0, 4.0), loops));
-    for k in 1..=20 {
-        let p = dvec3(-0.37, -0.31, -0.43) * f64::from(k);
-        let foot = case.foot_at(p, p.length());
+    let loops = vec![
+        rectangle(true, DVec2::splat(0.5), dvec2(9.5, 5.5)),
+        rectangle(false, DVec2::ONE, DVec2::splat(2.0)),
+        circle(false, dvec2(5.0, 3.0), 1.0),
+    ];
+    let case = Case::new(Face::new("plate with two holes", faces::plane(10.0, 6.0), loops));
+    let mut random = Random::new(7);
+    let corner = dvec3(0.5, 0.5, 0.0);
+    for _ in 0..100 {
+        let way = dvec3(-random.unit(), -random.unit(), random.between(-2.0, 2.0));
+        let p = corner + random.power(-6.0, 3.0) * way;
+        let foot = case.foot_at(p, p.distance(corner));
         assert_eq!(foot.place, Place::Vertex, "{foot:?}");
     }
     let seen = Case::new(faces::window_in_a_cylinder());
