@@ -35,6 +35,7 @@ mod invalid;
 mod knots;
 mod shapes;
 mod surface;
+mod trim;
 
 pub use basis::binomial;
 pub use bounds::Aabb;
@@ -52,3 +53,7 @@ pub use invalid::{Along, Direction, InvalidDefinition, PointIndex};
 pub use knots::{Break, KnotVector, MAX_DEGREE, Span};
 pub use shapes::{Circle, Cone, Cylinder, Ellipse, Frame, Line, Plane, Sphere, Torus};
 pub use surface::{NurbsSurface, SurfaceData};
+pub use trim::{
+    Cover, InvalidTrim, PlaneCurve, Region, Side, TrimCurve, TrimCurveData, TrimEntry, TrimLoop, TrimLoopData,
+    Trimming, TrimmingData,
+};

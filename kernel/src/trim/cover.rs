@@ -1,0 +1,77 @@
+//! What a region does in a box of parameters.
+
+use glam::{DVec2, DVec3};
+
+use crate::trim::crossing::{Net, halved, orientation};
+use crate::trim::region::{Piece, Region, Side, hull};
+
+/// How often a piece is halved at most to see whether it meets a box.
+const DEPTH: u32 = 10;
+
+/// What a region does in a box of parameters.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Cover {
+    /// The whole box belongs to it.
+    Inside,
+    /// No point of the box does.
+    Outside,
+    /// The boundary may meet the box.
+    Crossed,
+}
+
+impl Region {
+    /// What the region does in the closed box from `min` to `max`. `Inside` and `Outside` are certain; `Crossed` may be said of a box that the boundary passes by
+    /// a thousandth of a piece's length.
+    #[must_use]
+    pub fn cover(&self, min: DVec2, max: DVec2) -> Cover {
+        if self.pieces.iter().any(|piece| meets(piece, min, max)) {
+            return Cover::Crossed;
+        }
+        match self.side(0.5 * (min + max)) {
+            Side::Inside => Cover::Inside,
+            Side::Outside => Cover::Outside,
+            Side::Boundary => Cover::Crossed,
+        }
+    }
+}
+
+/// Whether a piece may meet a box.
+fn meets(piece: &Piece, min: DVec2, max: DVec2) -> bool {
+    if apart((piece.min, piece.max), (min, max)) {
+        return false;
+    }
+    if piece.is_straight() {
+        return segment_meets(piece.start, piece.end, min, max);
+    }
+    let net: Net = piece.points.iter().copied().collect();
+    let mut open: Vec<(Net, DVec2, DVec2, u32)> = vec![(net, piece.start, piece.end, 0)];
+    while let Some((points, start, end, depth)) = open.pop() {
+        if apart(hull(&points, start, end), (min, max)) {
+            continue;
+        }
+        if depth == DEPTH || is_within(start, min, max) || is_within(end, min, max) {
+            return true;
+        }
+        let (low, high) = halved(&points);
+        let tip: DVec3 = low[low.len() - 1];
+        let middle = tip.truncate() / tip.z;
+        open.push((low, start, middle, depth + 1));
+        open.push((high, middle, end, depth + 1));
+    }
+    false
+}
+
+fn apart((a_min, a_max): (DVec2, DVec2), (b_min, b_max): (DVec2, DVec2)) -> bool {
+    a_max.cmplt(b_min).any() || b_max.cmplt(a_min).any()
+}
+
+fn is_within(at: DVec2, min: DVec2, max: DVec2) -> bool {
+    at.cmpge(min).all() && at.cmple(max).all()
+}
+
+/// Whether a segment whose box meets another box meets that box: not where all its corners lie on one side of the line.
+fn segment_meets(start: DVec2, end: DVec2, min: DVec2, max: DVec2) -> bool {
+    let corners = [min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)];
+    let sides = corners.map(|corner| orientation(start, end, corner));
+    !(sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0))
+}

@@ -1,0 +1,140 @@
+//! The region that loops of p-curves bound.
+
+use glam::{DVec2, DVec3};
+
+use crate::invalid::Direction;
+use crate::surface::NurbsSurface;
+use crate::trim::crossing::{Crossing, crossing};
+use crate::trim::trimming::{TrimCurve, TrimLoop};
+
+/// Where parameters lie, seen from a region.
+#[derive(Debug, Clone, Copy, PartialEq, Eq)]
+pub enum Side {
+    /// Within.
+    Inside,
+    /// On the boundary, as far as doubles tell.
+    Boundary,
+    /// Without.
+    Outside,
+}
+
+/// A region of the parameter plane, closed: what loops of p-curves bound, by the even-odd rule.
+///
+/// Where a curve does not begin in the bits in which the one before it ends, the straight way between them is part of the boundary. So every loop is
+/// closed to the last bit, and no ray slips through.
+#[derive(Debug, Clone)]
+pub struct Region {
+    pub(super) pieces: Vec<Piece>,
+    min: DVec2,
+    max: DVec2,
+}
+
+/// A Bézier piece of the boundary.
+#[derive(Debug, Clone)]
+pub(super) struct Piece {
+    /// `(w u, w v, w)`.
+    pub(super) points: Vec<DVec3>,
+    /// The ends, in the bits that the neighbours have too.
+    pub(super) start: DVec2,
+    pub(super) end: DVec2,
+    /// The box of the control points.
+    pub(super) min: DVec2,
+    pub(super) max: DVec2,
+}
+
+impl Piece {
+    pub(super) fn new(points: Vec<DVec3>, start: DVec2, end: DVec2) -> Self {
+        let (min, max) = hull(&points, start, end);
+        Self { points, start, end, min, max }
+    }
+
+    fn straight(start: DVec2, end: DVec2) -> Self {
+        Self::new(vec![start.extend(1.0), end.extend(1.0)], start, end)
+    }
+
+    pub(super) fn is_straight(&self) -> bool {
+        self.points.len() == 2
+    }
+}
+
+/// The box of control points, and of the ends that stand for the first and the last.
+pub(super) fn hull(points: &[DVec3], start: DVec2, end: DVec2) -> (DVec2, DVec2) {
+    let ends = (start.min(end), start.max(end));
+    let inner = points.get(1..points.len() - 1).unwrap_or_default();
+    inner.iter().fold(ends, |(min, max), point| {
+        let point = point.truncate() / point.z;
+        (min.min(point), max.max(point))
+    })
+}
+
+impl Region {
+    pub(super) fn new(loops: &[TrimLoop]) -> Self {
+        let mut pieces: Vec<Piece> = Vec::new();
+        for one in loops {
+            let mut at = one.curves[one.curves.len() - 1].curve.end();
+            for TrimCurve { curve, .. } in &one.curves {
+                if at != curve.start() {
+                    pieces.push(Piece::straight(at, curve.start()));
+                }
+                at = curve.start();
+                let parts = curve.pieces();
+                let last = parts.len() - 1;
+                for (k, part) in parts.into_iter().enumerate() {
+                    let points: Vec<DVec3> = part.points.iter().map(|h| DVec3::new(h.x, h.y, h.w)).collect();
+                    let tip = points[points.len() - 1];
+                    let end = if k == last { curve.end() } else { tip.truncate() / tip.z };
+                    pieces.push(Piece::new(points, at, end));
+                    at = end;
+                }
+            }
+        }
+        let none = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let (min, max) = pieces.iter().fold(none, |(min, max), piece| (min.min(piece.min), max.max(piece.max)));
+        Self { pieces, min, max }
+    }
+
+    /// A box that holds the region: least and largest `(u, v)`.
+    #[must_use]
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        (self.min, self.max)
+    }
+
+    /// Where parameters lie.
+    ///
+    /// # Accuracy
+    ///
+    /// Exact for straight p-curves (adaptive predicates); for curved ones up to the rounding of their subdivision, a few ulps of the largest coordinate:
+    /// within that of a curve the answer is [`Side::Boundary`].
+    #[must_use]
+    pub fn side(&self, at: DVec2) -> Side {
+        if at.cmplt(self.min).any() || at.cmpgt(self.max).any() || at.is_nan() {
+            return Side::Outside;
+        }
+        let mut is_inside = false;
+        for piece in &self.pieces {
+            match crossing(piece, at) {
+                Crossing::On => return Side::Boundary,
+                Crossing::Odd => is_inside = !is_inside,
+                Crossing::Even => {}
+            }
+        }
+        if is_inside { Side::Inside } else { Side::Outside }
+    }
+
+    /// Whether no point is inside, as far as a grid of the domain and points beside the boundary tell.
+    pub(super) fn is_empty(&self, surface: &NurbsSurface) -> bool {
+        let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|direction| surface.domain(direction));
+        let beside = |piece: &Piece| {
+            let step = 1e-7 * DVec2::new(u1 - u0, v1 - v0);
+            let middle = piece.points.iter().fold(DVec3::ZERO, |sum, point| sum + *point);
+            let middle =
+                if piece.is_straight() { 0.5 * (piece.start + piece.end) } else { middle.truncate() / middle.z };
+            let across = (piece.end - piece.start).perp().normalize_or(DVec2::X) * step;
+            [middle, middle + across, middle - across]
+        };
+        let grid = (1..16).flat_map(|i| (1..16).map(move |j| DVec2::new(f64::from(i), f64::from(j)) / 16.0));
+        let (min, max) = (self.min, self.max);
+        let mut seen = grid.map(|share| min + share * (max - min)).chain(self.pieces.iter().flat_map(beside));
+        !seen.any(|at| self.side(at) == Side::Inside)
+    }
+}
