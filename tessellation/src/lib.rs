@@ -29,6 +29,7 @@
 //!
 //! Both bounds leave out the rounding of evaluation, a few ulps of the largest coordinate.
 
+mod apart;
 mod bound;
 mod cells;
 mod curve;
