@@ -3,10 +3,10 @@
 use std::sync::Arc;
 
 use glam::{DVec2, DVec3};
+use perpend::kernel::PlaneCurve;
 use perpend::kernel::{Spacing, curve_through};
 use perpend::projection::{Prepared, Query, QueryOptions, Scratch};
 use perpend::{Definition, Direction, EntityId, NurbsCurve, NurbsSurface, Parameter};
-use perpend_kernel::PlaneCurve;
 
 /// Samples by which curves are compared, and told from points.
 const SAMPLES: usize = 9;

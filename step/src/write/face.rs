@@ -4,8 +4,8 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use glam::DVec2;
+use perpend::kernel::{PlaneCurve, Side, Trimming};
 use perpend::{Definition, Direction, EntityId, NurbsSurface};
-use perpend_kernel::{PlaneCurve, Side, Trimming};
 
 use super::edge::space_curves;
 use super::geometry::{Analytic, known_kind, spline_surface};
@@ -98,7 +98,7 @@ fn loops(surface: &NurbsSurface, trimming: Option<&Trimming>) -> Vec<Loop> {
         let side = |i: usize| PlaneCurve::line(corners[i], corners[(i + 1) % 4]).expect("a domain has an extent");
         return vec![Loop { outer: true, left: true, curves: (0..4).map(|i| (side(i), None)).collect() }];
     };
-    let of = |one: &perpend_kernel::TrimLoop| Loop {
+    let of = |one: &perpend::kernel::TrimLoop| Loop {
         outer: one.outer,
         left: lies_left(trimming, &one.curves.iter().map(|trim| &trim.curve).collect::<Vec<_>>()),
         curves: one.curves.iter().map(|trim| (trim.curve.clone(), trim.edge)).collect(),

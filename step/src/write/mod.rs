@@ -13,8 +13,8 @@ use std::io::{self, Write};
 use std::sync::Arc;
 
 use glam::DVec3;
+use perpend::kernel::Trimming;
 use perpend::{Definition, EntityId, Model};
-use perpend_kernel::Trimming;
 
 use geometry::{free_curve, known_kind, placement};
 use part::{BodySource, FaceSource, Part};

@@ -2,8 +2,8 @@
 
 use std::collections::HashSet;
 
+use perpend::kernel::Trimming;
 use perpend::{Definition, Entity, EntityId, Model, NurbsSurface};
-use perpend_kernel::Trimming;
 
 /// A face: a surface, and what part of it counts.
 #[derive(Debug, Clone, Copy)]
