@@ -43,7 +43,7 @@ pub(super) fn face<W: Write>(
                 if curve.deviation > 0.1 * tolerance && curve.entity.is_none() {
                     written.fitted.push(Fitted { face: entity.id(), deviation: curve.deviation });
                 }
-                path.push(topology.edge(text, &curve, entity.id())?);
+                path.extend(topology.edge(text, &curve, entity.id())?);
             }
         }
         if one.left == reversed {

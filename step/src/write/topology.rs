@@ -78,14 +78,19 @@ impl Topology {
         Ok((self.vertices.len() - 1, id))
     }
 
-    /// The edge of a curve that a face's loop follows.
+    /// The edge of a curve that a face's loop follows; none where the curve begins, ends and stays at one vertex, as beside a pole.
     pub(super) fn edge<W: Write>(&mut self, text: &mut Text<W>, of: &SpaceCurve, face: EntityId) -> io::Result<Used> {
         if let Some(index) = of.entity.and_then(|entity| self.by_entity.get(&entity)) {
-            return Ok(Used { edge: self.edges[*index].id, forward: of.forward });
+            return Ok(Some(Used { edge: self.edges[*index].id, forward: of.forward }));
         }
         let curve = &of.curve;
         let (start, end) = (curve.point(curve.domain().0), curve.point(curve.domain().1));
         let ((first, from), (last, to)) = (self.vertex(text, start)?, self.vertex(text, end)?);
+        // the vertex may lie beside both ends by the tolerance, and they beside the rest by another
+        let stays = |at: &DVec3| at.distance(self.vertices[first].0) <= 4.0 * self.tolerance;
+        if first == last && samples(curve).iter().all(stays) {
+            return Ok(None);
+        }
         let key = (first.min(last), first.max(last));
         for index in self.by_ends.get(&key).into_iter().flatten() {
             let old = &self.edges[*index];
@@ -100,7 +105,7 @@ impl Topology {
                     }
                     self.by_entity.insert(entity, *index);
                 }
-                return Ok(Used { edge: old.id, forward: of.forward == ascends });
+                return Ok(Some(Used { edge: old.id, forward: of.forward == ascends }));
             }
         }
         let kind = curve_kind(curve);
@@ -112,7 +117,7 @@ impl Topology {
         if let Some(entity) = of.entity {
             self.by_entity.insert(entity, index);
         }
-        Ok(Used { edge: id, forward: of.forward })
+        Ok(Some(Used { edge: id, forward: of.forward }))
     }
 }
 
