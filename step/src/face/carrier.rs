@@ -145,7 +145,7 @@ impl Carrier {
         let limits = [0, 1].map(|k| if numeric.closed[k] { NO_LIMIT } else { domain[k] });
         let (poles, scale) = (numeric.poles(), numeric.scale());
         Self {
-            form: Form::Numeric(numeric),
+            form: Form::Numeric(Box::new(numeric)),
             periods,
             limits,
             poles,
