@@ -17,7 +17,10 @@ fn models() -> Vec<(String, std::path::PathBuf)> {
     let mut models: Vec<_> = folders
         .filter_map(|folder| {
             let folder = folder.ok()?.path();
-            let file = ["original.step", "original.stp"].map(|name| folder.join(name)).into_iter().find(|file| file.is_file())?;
+            let file = ["original.step", "original.stp"]
+                .map(|name| folder.join(name))
+                .into_iter()
+                .find(|file| file.is_file())?;
             Some((folder.file_name()?.to_string_lossy().into_owned(), file))
         })
         .collect();
@@ -30,7 +33,10 @@ fn area_of(built: &BuiltFace) -> Result<f64, String> {
     let loops = built
         .loops
         .iter()
-        .map(|one| TrimLoopData { outer: one.outer, curves: one.curves.iter().map(|(curve, _)| curve.clone()).collect() })
+        .map(|one| TrimLoopData {
+            outer: one.outer,
+            curves: one.curves.iter().map(|(curve, _)| curve.clone()).collect(),
+        })
         .collect();
     let data = TrimmingData { reversed: built.reversed, tolerance: built.tolerance, loops };
     let (trimming, _) = Trimming::enter(data, &built.surface).map_err(|error| error.to_string())?;
