@@ -175,10 +175,8 @@ impl Hierarchy {
         let proven = state.tau().min(state.open).min(bound);
         // what is beyond by no more than rounding is answered, and judged in the model's unit
         let rounding = 64.0 * ROUNDING * (1.0 + state.point.length());
-        if state.best.distance > state.goal.wanted + rounding {
-            if proven >= state.goal.wanted {
-                return TrimmedFoot::Beyond(state.done);
-            }
+        if state.best.distance > state.goal.wanted + rounding && proven >= state.goal.wanted {
+            return TrimmedFoot::Beyond(state.done);
         }
         if state.best.leaf == NO_LEAF && !is_boundary_known {
             // the anchor is no foot: it lies at the limit but for rounding, or the work did not suffice for the proof that there is none
