@@ -4,7 +4,7 @@ use std::io;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-use perpend::{EditError, EntityId, Model, QueryError, ReadError, ReplayError, WriteError};
+use perpend::{BodyError, EditError, EntityId, Model, QueryError, ReadError, ReplayError, WriteError};
 
 use crate::project::points::PointsError;
 
@@ -33,8 +33,10 @@ pub(crate) enum CommandError {
     StandardOutput(io::Error),
     #[error("cannot start the worker threads: {0}; ask for fewer with --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    #[error("{name} has a column `entity`, and --entity names one too: leave out one of them")]
-    TwoEntities { name: String },
+    #[error("{name} has a column `entity`, and --{option} says otherwise: leave out one of them")]
+    TwoEntities { name: String, option: &'static str },
+    #[error("{}: {source}", model.display())]
+    Body { model: PathBuf, source: BodyError },
     #[error("{} is the model; it would be lost: give another file to -o", path.display())]
     OutputIsModel { path: PathBuf },
     #[error("{}: no ending that names a format: name it .step, .stp, .obj, .stl or .json, or give --format", path.display())]
