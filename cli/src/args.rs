@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, value_parser};
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use perpend::{DVec3, EntityId, Method, Model, ReadError, Trust};
 
 use crate::names;
@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Project(ProjectArguments),
     /// Find all stationary points of the distance from a point to an entity
     Stationary(StationaryArguments),
+    /// Write a model for other programs: STEP, triangles (OBJ, STL), or what is known as JSON
+    Export(ExportArguments),
 }
 
 /// What happens to knowledge of the model that is false.
@@ -271,6 +273,56 @@ pub(crate) struct StationaryArguments {
     pub(crate) trust: TrustArguments,
 }
 
+/// Write a model for other programs: as a STEP file, as triangles, or what is known of its entities as JSON.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES, after_long_help = ABOUT_FORMATS)]
+pub(crate) struct ExportArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// The file, written whole or not at all; `-` is standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// The format; without it, the one that OUT's ending names
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
+    /// Write this entity or body alone
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// OBJ and STL: how far triangles and polylines may be from the shapes, in the model's unit; without it, 1e-3 times the model's size
+    #[arg(long, value_name = "E", value_parser = chord, allow_negative_numbers = true)]
+    pub(crate) chord: Option<f64>,
+    /// STL: write text
+    #[arg(long)]
+    pub(crate) ascii: bool,
+}
+
+/// A format that models are exported in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Step,
+    Obj,
+    Stl,
+    Json,
+}
+
+const ABOUT_FORMATS: &str = "\
+Formats, by the ending of OUT:
+  .step .stp  STEP, AP214: bodies, faces with their edges, free curves, names, colours, the unit. Planes,
+              cylinders, cones, spheres and tori that are known and proved are written as such
+              (`perpend learn` acquires what is not known), everything else as B-splines
+  .obj        triangles of faces and polylines of free curves, an object each, with normals
+  .stl        triangles alone, binary (single precision) or with --ascii
+  .json       what `perpend show --json` writes
+
+Every point of a triangle or a polyline is proven to be within the chord error of its shape.
+
+Example:
+  perpend export bracket.ron -o bracket.stl --chord 0.05
+
+Exit codes: 0 done; 1 an input is wrong (standard error says what, where and how to mend it); 2 wrong usage.";
+
 /// Project points: the nearest point of an entity, or of the whole model, to each.
 ///
 /// POINTS is CSV with a header that names the columns `x,y,z`, or `entity,x,y,z` where each row names its entity by id.
@@ -351,6 +403,13 @@ fn length(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(length),
         _ => Err("it is a length in the model's unit: a finite number, at least 0".to_owned()),
+    }
+}
+
+fn chord(text: &str) -> Result<f64, String> {
+    match length(text) {
+        Ok(length) if length > 0.0 => Ok(length),
+        _ => Err("it is a length in the model's unit: a finite number above 0".to_owned()),
     }
 }
 

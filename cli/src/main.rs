@@ -4,6 +4,7 @@ mod args;
 mod check;
 mod error;
 mod explain;
+mod export;
 mod impact;
 mod import;
 mod learn;
@@ -38,6 +39,7 @@ fn main() -> ExitCode {
         Command::Impact(arguments) => impact::run(&arguments),
         Command::Project(arguments) => project::run(&arguments),
         Command::Stationary(arguments) => stationary::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
     };
     match done {
         Ok(code) => code,

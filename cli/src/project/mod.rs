@@ -101,7 +101,7 @@ fn target(arguments: &ProjectArguments, source: &Source<'_>, columns: &Columns) 
     }
 }
 
-fn is_same_file(a: &Path, b: &Path) -> bool {
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
