@@ -79,7 +79,12 @@ impl Topology {
     }
 
     /// The edge of a curve that a face's loop follows; none where the curve begins, ends and stays at one vertex, as beside a pole.
-    pub(super) fn edge<W: Write>(&mut self, text: &mut Text<W>, of: &SpaceCurve, face: EntityId) -> io::Result<Used> {
+    pub(super) fn edge<W: Write>(
+        &mut self,
+        text: &mut Text<W>,
+        of: &SpaceCurve,
+        face: EntityId,
+    ) -> io::Result<Option<Used>> {
         if let Some(index) = of.entity.and_then(|entity| self.by_entity.get(&entity)) {
             return Ok(Some(Used { edge: self.edges[*index].id, forward: of.forward }));
         }
