@@ -157,14 +157,20 @@ fn one_model_gives_one_text() {
     assert_eq!(text(&can()), text(&can()));
 }
 
-/// Parts as other systems wrote them, once they are models, are written and read with no face lost and each class kept.
+/// Parts as other systems wrote them, once they are models, are written and read with no face lost. They lie outside the repository, where
+/// `real.rs` looks for them; without them the test says so and passes.
 #[test]
 fn real_parts_are_written_and_read_again() {
-    let folder = std::env::var_os("PERPEND_REAL")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared/real")), PathBuf::from);
+    let shared = std::env::var_os("PERPEND_SHARED")
+        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared")), PathBuf::from);
+    let folder = shared.join("real");
+    if !folder.is_dir() {
+        println!("no parts in {}: set PERPEND_SHARED to their folder", folder.display());
+        return;
+    }
     let parts = [("as1-assembly", "stp"), ("nist-ftc-06", "step"), ("odri-lower-leg", "step"), ("tigl-nacelle", "stp")];
     for (name, ending) in parts {
-        let Ok(file) = std::fs::read(folder.join(name).join(format!("original.{ending}"))) else { continue };
+        let file = std::fs::read(folder.join(name).join(format!("original.{ending}"))).unwrap();
         let first = import(file, &ReadOptions::default()).unwrap();
         let second = import(text(&first.model), &ReadOptions::default()).unwrap();
         assert_eq!(second.not_understood, [], "{name}");
