@@ -26,9 +26,6 @@ pub(super) struct SpaceCurve {
     pub(super) deviation: f64,
 }
 
-/// What the curve of an edge entity is, by its id.
-pub(super) type Edges<'a> = &'a dyn Fn(EntityId) -> Option<Arc<Definition>>;
-
 /// The curves of a p-curve on a surface, in its order; none where all of it is one point, as at a pole.
 pub(super) fn space_curves(
     surface: &NurbsSurface,
