@@ -23,8 +23,10 @@ const DEPTH: u32 = 12;
 #[derive(Debug)]
 pub(crate) struct Boundary {
     curves: Hierarchy,
-    /// What the hierarchy's parameter counts: part `k` covers `[k, k + 1]`.
+    /// What the hierarchy's parameter counts: part `k` covers `[2k, 2k + 1]`.
     parts: Vec<Part>,
+    /// Least and largest parameters of the carrier.
+    domain: (DVec2, DVec2),
     /// How far any of the curves may be from the boundary, in the entity's own coordinates.
     error: f64,
 }
@@ -81,22 +83,24 @@ impl Boundary {
             }
         }
         let curves = Hierarchy::of_curves(frame, nets, patches.rounding(degree));
-        Self { curves, parts, error }
+        let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|along| surface.domain(along));
+        Self { curves, parts, domain: (DVec2::new(u0, v0), DVec2::new(u1, v1)), error }
     }
 
     /// The boundary's nearest point; none where it is proven that none lies within the query's `max_distance`.
     pub(crate) fn project(&self, query: &Query, region: &Region, workspace: &mut Workspace) -> Option<BoundaryFoot> {
         let mut solution = self.curves.project(query, None, workspace)?;
         solution.lower_bound = (solution.lower_bound - self.error).max(0.0);
-        let index = (solution.u.floor().max(0.0) as usize).min(self.parts.len() - 1);
+        let index = ((0.5 * solution.u).floor().max(0.0) as usize).min(self.parts.len() - 1);
         let part = self.parts[index];
-        let share = (solution.u - index as f64).clamp(0.0, 1.0);
+        let share = (solution.u - 2.0 * index as f64).clamp(0.0, 1.0);
         let t = if share >= 1.0 { part.to } else { part.from + share * (part.to - part.from) };
         let piece = &region.pieces()[part.piece as usize];
         let at = match t {
             0.0 => piece.start,
             1.0 => piece.end,
-            t => point(&piece.points, t),
+            // an ulp outside, where a combination of equal numbers was rounded up
+            t => point(&piece.points, t).clamp(self.domain.0, self.domain.1),
         };
         let is_vertex = (t == 0.0 && piece.begins_curve) || (t == 1.0 && piece.ends_curve);
         Some(BoundaryFoot { at, is_vertex, solution })
