@@ -8,7 +8,7 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use perpend::{DVec3, Model, NurbsSurface, QueryOptions};
+use perpend::{DVec3, Model, NurbsSurface};
 use perpend_step::{ReadOptions, SourceCurve, SourceLoop, SourcePart, SourceSurface, read_file};
 
 /// A part: its folder, its file, and how many faces, edges and bodies the file has.
@@ -238,5 +238,5 @@ fn corners(entity: &serde_json::Value, points: &[DVec3]) -> Vec<DVec3> {
 fn distance(surface: &NurbsSurface, p: DVec3) -> f64 {
     let mut model = Model::new();
     let id = model.insert("surface", surface.clone()).expect("a valid surface");
-    model.project(id, p, &QueryOptions::default()).expect("a finite point").distance
+    model.project(id, p).expect("a finite point").distance
 }
