@@ -23,7 +23,7 @@ const DEPTH: u32 = 12;
 #[derive(Debug)]
 pub(crate) struct Boundary {
     curves: Hierarchy,
-    /// What the hierarchy's parameter counts: part `k` covers `[2k, 2k + 1]`.
+    /// What the hierarchy's parameter counts, in ascending order of it.
     parts: Vec<Part>,
     /// Least and largest parameters of the carrier.
     domain: (DVec2, DVec2),
@@ -34,6 +34,9 @@ pub(crate) struct Boundary {
 /// A part of the boundary: a range of the parameter of one of its pieces.
 #[derive(Debug, Clone, Copy)]
 struct Part {
+    /// It covers `[start, start + 1]` of the hierarchy's parameter. Where it does not go on from the part before it, a value lies between
+    /// both: no value of the parameter is two points.
+    start: f64,
     piece: u32,
     from: f64,
     to: f64,
@@ -53,10 +56,13 @@ pub(crate) struct BoundaryFoot {
 impl Boundary {
     /// The boundary of a region of a surface, whose patches in the entity's own coordinates are given.
     pub(super) fn new(region: &Region, surface: &NurbsSurface, frame: Frame, patches: &Patches) -> Self {
-        let mut parts = Vec::new();
-        let mut nets: Vec<Net> = Vec::new();
+        let mut parts: Vec<Part> = Vec::new();
+        let mut nets: Vec<(f64, Net)> = Vec::new();
+        let mut end: Option<DVec2> = None;
         let (mut error, mut degree) = (0.0_f64, 0);
         for (index, piece) in region.pieces().iter().enumerate() {
+            let mut goes_on = end == Some(piece.start);
+            end = Some(piece.end);
             for (from, to) in cut(piece, surface) {
                 let points = restricted(&piece.points, from, to);
                 let patch = patches.holding(middle_of(&points));
@@ -77,8 +83,11 @@ impl Boundary {
                         (net, 0.0)
                     };
                     error = error.max(off);
-                    nets.push(net);
-                    parts.push(Part { piece: index as u32, from, to });
+                    let step = if goes_on { 1.0 } else { 2.0 };
+                    let start = parts.last().map_or(0.0, |last| last.start + step);
+                    goes_on = true;
+                    nets.push((start, net));
+                    parts.push(Part { start, piece: index as u32, from, to });
                 }
             }
         }
@@ -91,9 +100,9 @@ impl Boundary {
     pub(crate) fn project(&self, query: &Query, region: &Region, workspace: &mut Workspace) -> Option<BoundaryFoot> {
         let mut solution = self.curves.project(query, None, workspace)?;
         solution.lower_bound = (solution.lower_bound - self.error).max(0.0);
-        let index = ((0.5 * solution.u).floor().max(0.0) as usize).min(self.parts.len() - 1);
+        let index = self.parts.partition_point(|part| part.start <= solution.u).saturating_sub(1);
         let part = self.parts[index];
-        let share = (solution.u - 2.0 * index as f64).clamp(0.0, 1.0);
+        let share = (solution.u - part.start).clamp(0.0, 1.0);
         let t = if share >= 1.0 { part.to } else { part.from + share * (part.to - part.from) };
         let piece = &region.pieces()[part.piece as usize];
         let at = match t {
