@@ -1,5 +1,7 @@
 //! Models written as STEP and read again.
 
+#![allow(clippy::print_stderr, reason = "a test that skips says so aloud")]
+
 use std::f64::consts::TAU;
 use std::path::PathBuf;
 
