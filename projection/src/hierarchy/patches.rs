@@ -118,7 +118,7 @@ impl Patches {
             }
         }
         let trim = Trim::new(region, crossed, surface);
-        let hierarchy = Hierarchy::of_pieces(self.frame, whole, self.reserve, Level::new());
+        let hierarchy = Hierarchy::of_pieces(self.frame, whole, self.reserve, Level::new(), &mut Vec::new());
         Hierarchy { trim: Some(trim), ..hierarchy }
     }
 }
