@@ -55,7 +55,10 @@ struct Memory {
 }
 
 /// An answer: the entity and the foot, or none within the maximum distance.
-type Answer = Option<(EntityId, FootPoint)>;
+pub(crate) type Answer = Option<(EntityId, FootPoint)>;
+
+/// What a row asked with its answer, or what is wrong with it.
+pub(crate) type Asking = Result<(Asked, Answer), Complaint>;
 
 impl<'a> Engine<'a> {
     pub(crate) fn new(model: &'a Model, target: Target, options: QueryOptions, layout: Layout<'a>) -> Self {
@@ -67,17 +70,44 @@ impl<'a> Engine<'a> {
 
     /// The answers to a batch, in order, in parts.
     pub(crate) fn answer(&self, batch: &Batch) -> Vec<Answers> {
+        self.in_parts(batch, |rows, askings| {
+            let mut answers = Answers::default();
+            for (row, asking) in rows.iter().zip(askings) {
+                self.take(*row, asking, &mut answers);
+            }
+            answers
+        })
+    }
+
+    /// What the rows of a batch ask, each with its line and its answer, in order, in parts.
+    pub(crate) fn ask(&self, batch: &Batch) -> Vec<Vec<(u64, Asking)>> {
+        self.in_parts(batch, |rows, askings| rows.iter().map(|row| row.line()).zip(askings).collect())
+    }
+
+    /// Whether the answer to a point is certified.
+    pub(crate) fn is_certified(&self, id: EntityId, foot: &FootPoint, point: DVec3) -> bool {
+        self.certified(id).holds(foot, point.abs().max_element())
+    }
+
+    fn certified(&self, id: EntityId) -> Certified {
+        match self.target {
+            Target::Nearest => self.of_model,
+            _ => self.of_entity[&id],
+        }
+    }
+
+    fn in_parts<T: Send>(&self, batch: &Batch, told: impl Fn(&[Row<'_>], Vec<Asking>) -> T + Sync) -> Vec<T> {
         (0..batch.len().div_ceil(ROWS))
             .into_par_iter()
             .map_init(Memory::default, |memory, part| {
                 let end = batch.len().min((part + 1) * ROWS);
                 let rows: Vec<Row<'_>> = (part * ROWS..end).map(|index| batch.row(index)).collect();
-                self.answer_part(&rows, memory)
+                told(&rows, self.ask_part(&rows, memory))
             })
             .collect()
     }
 
-    fn answer_part(&self, rows: &[Row<'_>], memory: &mut Memory) -> Answers {
+    fn ask_part(&self, rows: &[Row<'_>], memory: &mut Memory) -> Vec<Asking> {
         let asked: Vec<Result<Asked, Complaint>> =
             rows.iter().map(|row| query::read(*row, self.layout.columns, self.model)).collect();
         let points: Vec<DVec3> = asked.iter().flatten().map(|asked| asked.point).collect();
@@ -85,19 +115,18 @@ impl<'a> Engine<'a> {
             Target::Nearest => self.model.nearest_all(&points, &self.options).into_iter(),
             _ => Vec::new().into_iter(),
         };
-        let mut answers = Answers::default();
+        let mut askings = Vec::with_capacity(rows.len());
         for (row, asked) in rows.iter().zip(asked) {
-            let answer = asked.and_then(|asked| {
+            askings.push(asked.and_then(|asked| {
                 let answer = match self.target {
                     Target::Nearest => nearest.next().unwrap_or(Ok(None)),
                     Target::Entity(id) => self.project(id, asked.point, memory),
                     Target::Named => asked.entity.map_or(Ok(None), |id| self.project(id, asked.point, memory)),
                 };
                 answer.map(|answer| (asked, answer)).map_err(|error| self.refused(*row, asked.point, &error))
-            });
-            self.take(*row, answer, &mut answers);
+            }));
         }
-        answers
+        askings
     }
 
     fn project(&self, id: EntityId, point: DVec3, memory: &mut Memory) -> Result<Answer, QueryError> {
@@ -118,15 +147,11 @@ impl<'a> Engine<'a> {
     }
 
     /// Writes and counts the answer to a row.
-    fn take(&self, row: Row<'_>, answer: Result<(Asked, Answer), Complaint>, answers: &mut Answers) {
+    fn take(&self, row: Row<'_>, asking: Asking, answers: &mut Answers) {
         answers.tally.rows += 1;
-        let answer = match answer {
+        let answer = match asking {
             Ok((asked, Some((id, foot)))) => {
-                let certified = match self.target {
-                    Target::Nearest => self.of_model,
-                    _ => self.of_entity[&id],
-                };
-                answers.tally.answer(&foot, asked.point.abs().max_element(), certified);
+                answers.tally.answer(&foot, asked.point.abs().max_element(), self.certified(id));
                 Some((id, foot))
             }
             Ok((_, None)) => {

@@ -1,12 +1,13 @@
 //! `perpend project`: the nearest points to a file of points.
 
-mod answer;
-mod engine;
-mod output;
+pub(crate) mod answer;
+pub(crate) mod complaints;
+pub(crate) mod engine;
+pub(crate) mod output;
 pub(crate) mod points;
-mod progress;
+pub(crate) mod progress;
 mod query;
-mod source;
+pub(crate) mod source;
 mod tally;
 
 use std::fs;
@@ -15,23 +16,21 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
-use perpend::QueryOptions;
+use perpend::{EntityId, QueryOptions};
 
 use crate::args::ProjectArguments;
 use crate::error::CommandError;
 use crate::project::answer::Layout;
+use crate::project::complaints::Complaints;
 use crate::project::engine::{Answers, Engine, Target};
 use crate::project::output::Output;
 use crate::project::points::{Batch, Columns, Points};
 use crate::project::source::Source;
 use crate::project::tally::Tally;
-use crate::report::{counted, say};
+use crate::report::counted;
 
 /// How many rows are in memory at a time.
-const BATCH: usize = 4096;
-
-/// How many bad rows are named one by one.
-const NAMED: usize = 20;
+pub(crate) const BATCH: usize = 4096;
 
 pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError> {
     let file = arguments.output.as_deref().filter(|path| path.as_os_str() != "-");
@@ -61,7 +60,7 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let bar = progress::bar(length, file.is_some());
     let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
     let columns = points.header().map_err(|problem| source.wrong(problem))?;
-    let target = target(arguments, &source, &columns)?;
+    let target = target(arguments.entity, source, &columns)?;
     let options = QueryOptions {
         gap: arguments.gap,
         max_distance: arguments.max_distance,
@@ -71,7 +70,7 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let layout = Layout { columns: &columns, normals: arguments.normals };
     let engine = Engine::new(&model, target, options, layout);
 
-    let mut journal = Journal { source: &source, bar: &bar, named: 0, tally: Tally::default() };
+    let mut journal = Journal { complaints: Complaints::new(source, &bar), bar: &bar, tally: Tally::default() };
     let mut output = output.write(&layout.header())?;
     let mut batch = Batch::default();
     loop {
@@ -92,8 +91,12 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
 }
 
 /// What the rows are projected onto.
-fn target(arguments: &ProjectArguments, source: &Source<'_>, columns: &Columns) -> Result<Target, CommandError> {
-    match (arguments.entity, columns.entity) {
+pub(crate) fn target(
+    entity: Option<EntityId>,
+    source: Source<'_>,
+    columns: &Columns,
+) -> Result<Target, CommandError> {
+    match (entity, columns.entity) {
         (Some(_), Some(_)) => Err(CommandError::TwoEntities { name: source.to_string() }),
         (Some(id), None) => Ok(Target::Entity(id)),
         (None, Some(_)) => Ok(Target::Named),
@@ -101,24 +104,21 @@ fn target(arguments: &ProjectArguments, source: &Source<'_>, columns: &Columns) 
     }
 }
 
-fn is_same_file(a: &Path, b: &Path) -> bool {
+pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
     matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
 }
 
 /// What is told while the run lasts.
 struct Journal<'a> {
-    source: &'a Source<'a>,
+    complaints: Complaints<'a>,
     bar: &'a ProgressBar,
-    /// How many bad rows have been named.
-    named: usize,
     tally: Tally,
 }
 
 impl Journal<'_> {
     fn take(&mut self, answers: &Answers) {
-        for complaint in answers.complaints.iter().take(NAMED - self.named) {
-            self.bar.suspend(|| say(format_args!("{}:{complaint}", self.source)));
-            self.named += 1;
+        for complaint in &answers.complaints {
+            self.complaints.take(complaint);
         }
         self.tally.add(&answers.tally);
     }
@@ -129,10 +129,7 @@ impl Journal<'_> {
     }
 
     fn finish(&self, unit: &str, reading: Duration, projecting: Duration) {
-        let unnamed = self.tally.bad - self.named as u64;
-        if unnamed > 0 {
-            say(format_args!("{}: and {} like these", self.source, counted(unnamed, "other bad row")));
-        }
+        self.complaints.finish();
         self.tally.report(unit, reading, projecting);
     }
 }
