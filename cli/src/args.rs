@@ -48,6 +48,8 @@ pub(crate) enum Command {
     Project(ProjectArguments),
     /// Find all stationary points of the distance from a point to an entity
     Stationary(StationaryArguments),
+    /// Make a page that shows a model and how far points lie from it
+    Report(ReportArguments),
 }
 
 /// What happens to knowledge of the model that is false.
@@ -287,6 +289,39 @@ pub(crate) struct ProjectArguments {
     pub(crate) output: Option<PathBuf>,
 }
 
+/// Make a page that shows a model and how far points lie from it.
+///
+/// One HTML file that needs nothing else: the surfaces, the points in the colours of their signed deviations, a histogram and tables.
+/// POINTS is as for `perpend project`.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ReportArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// The points (CSV); `-` is standard input
+    pub(crate) points: PathBuf,
+    /// The page, written whole or not at all
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Measure all points against this entity, and show it alone
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// How far triangles may be from the surfaces, in the model's unit; without it, 2e-4 times the size of what is shown
+    #[arg(long, value_name = "E", value_parser = above_zero, allow_negative_numbers = true)]
+    pub(crate) chord: Option<f64>,
+    /// The deviation at which the colours end, in the model's unit; without it, a round number that 98 % of the points are within
+    #[arg(long, value_name = "MAX", value_parser = above_zero, allow_negative_numbers = true)]
+    pub(crate) scale: Option<f64>,
+    /// The most points that are drawn: of more, one of 2, 4, 8, … is. The statistics are always of all points
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) most_points: u32,
+    /// The page's title; without it, the name of POINTS
+    #[arg(long, value_name = "T")]
+    pub(crate) title: Option<String>,
+}
+
 const ABOUT_ANSWERS: &str = "\
 Answers, one row for each row of POINTS, in order:
   entity          the entity's id
@@ -330,6 +365,13 @@ fn length(text: &str) -> Result<f64, String> {
     match text.parse() {
         Ok(length) if length >= 0.0 && f64::is_finite(length) => Ok(length),
         _ => Err("it is a length in the model's unit: a finite number, at least 0".to_owned()),
+    }
+}
+
+fn above_zero(text: &str) -> Result<f64, String> {
+    match length(text) {
+        Ok(length) if length > 0.0 => Ok(length),
+        _ => Err("it is a length in the model's unit: a finite number above 0".to_owned()),
     }
 }
 

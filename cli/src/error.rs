@@ -35,6 +35,8 @@ pub(crate) enum CommandError {
     TwoEntities { name: String },
     #[error("{} is the model; it would be lost: give another file to -o", path.display())]
     OutputIsModel { path: PathBuf },
+    #[error("{} is an input; it would be lost: give another file to -o", path.display())]
+    OutputIsInput { path: PathBuf },
 }
 
 impl CommandError {
@@ -45,7 +47,7 @@ impl CommandError {
 
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
-            Self::TwoEntities { .. } | Self::OutputIsModel { .. } => ExitCode::from(2),
+            Self::TwoEntities { .. } | Self::OutputIsModel { .. } | Self::OutputIsInput { .. } => ExitCode::from(2),
             _ => ExitCode::FAILURE,
         }
     }

@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod deviation_report;
 mod error;
 mod explain;
 mod impact;
@@ -36,6 +37,7 @@ fn main() -> ExitCode {
         Command::Impact(arguments) => impact::run(&arguments),
         Command::Project(arguments) => project::run(&arguments),
         Command::Stationary(arguments) => stationary::run(&arguments),
+        Command::Report(arguments) => deviation_report::run(&arguments),
     };
     match done {
         Ok(code) => code,

@@ -6,7 +6,7 @@ pub(crate) mod engine;
 pub(crate) mod output;
 pub(crate) mod points;
 pub(crate) mod progress;
-mod query;
+pub(crate) mod query;
 pub(crate) mod source;
 mod tally;
 
@@ -91,11 +91,7 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
 }
 
 /// What the rows are projected onto.
-pub(crate) fn target(
-    entity: Option<EntityId>,
-    source: Source<'_>,
-    columns: &Columns,
-) -> Result<Target, CommandError> {
+pub(crate) fn target(entity: Option<EntityId>, source: Source<'_>, columns: &Columns) -> Result<Target, CommandError> {
     match (entity, columns.entity) {
         (Some(_), Some(_)) => Err(CommandError::TwoEntities { name: source.to_string() }),
         (Some(id), None) => Ok(Target::Entity(id)),

@@ -1,0 +1,137 @@
+//! `perpend report`: a page that shows a model and how far points lie from it.
+
+mod base64;
+mod chart;
+mod colours;
+mod number;
+mod page;
+mod scene;
+mod statistics;
+mod survey;
+
+use std::path::Path;
+use std::process::ExitCode;
+
+use perpend::{Aabb, DVec3, Entity, EntityId, FootPoint, Model, QueryOptions};
+
+use crate::args::ReportArguments;
+use crate::deviation_report::page::Report;
+use crate::deviation_report::scene::Part;
+use crate::deviation_report::survey::{Measured, Survey};
+use crate::error::CommandError;
+use crate::project::answer::Layout;
+use crate::project::complaints::Complaints;
+use crate::project::engine::Engine;
+use crate::project::output::Output;
+use crate::project::points::{Batch, Points};
+use crate::project::source::Source;
+use crate::project::{BATCH, is_same_file, progress, target};
+use crate::report::{counted, say};
+
+/// The chord error, as a share of the size, where none is given: less than a pixel on a large screen.
+const CHORD: f64 = 2e-4;
+
+pub(crate) fn run(arguments: &ReportArguments) -> Result<ExitCode, CommandError> {
+    for input in [&arguments.model, &arguments.points] {
+        if is_same_file(&arguments.output, input) {
+            return Err(CommandError::OutputIsInput { path: arguments.output.clone() });
+        }
+    }
+    let output = Output::open(Some(&arguments.output))?;
+    let model = arguments.trust.read(&arguments.model)?;
+    if model.is_empty() {
+        return Err(CommandError::NoEntities { model: arguments.model.clone() });
+    }
+    let shown = match arguments.entity {
+        None => model.entities().iter().collect(),
+        Some(id) => {
+            vec![model.entity(id).ok_or_else(|| CommandError::unknown_entity(arguments.model.clone(), &model, id))?]
+        }
+    };
+
+    let (survey, bad) = survey(arguments, &model)?;
+    let size = size(&shown);
+    let chord = arguments.chord.unwrap_or(if size > 0.0 { CHORD * size } else { CHORD });
+    let part = Part::new(&shown, chord).expect("the command line takes no other chord errors");
+    let [model_name, points_name] = [&arguments.model, &arguments.points].map(|path| name(path));
+    let report = Report {
+        title: arguments.title.clone().unwrap_or_else(|| format!("Deviations of {points_name}")),
+        model: model_name,
+        points: points_name,
+        unit: model.units().symbol(),
+        part: &part,
+        survey: &survey,
+        bad,
+        scale: arguments.scale,
+        size,
+    };
+    output.write(report.page().as_bytes())?.finish()?;
+    tell(arguments, &survey, bad);
+    Ok(if bad == 0 { ExitCode::SUCCESS } else { ExitCode::FAILURE })
+}
+
+/// Measures all points; with how many rows could not be read.
+fn survey(arguments: &ReportArguments, model: &Model) -> Result<(Survey, u64), CommandError> {
+    let source = Source::of(&arguments.points);
+    let (input, length) = source.open()?;
+    let bar = progress::bar(length, true);
+    let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
+    let columns = points.header().map_err(|problem| source.wrong(problem))?;
+    let target = target(arguments.entity, source, &columns)?;
+    let layout = Layout { columns: &columns, normals: false };
+    let engine = Engine::new(model, target, QueryOptions::default(), layout);
+    let mut complaints = Complaints::new(source, &bar);
+    let mut survey = Survey::new(arguments.most_points as usize);
+    let mut batch = Batch::default();
+    loop {
+        points.read(&mut batch, BATCH).map_err(|problem| source.wrong(problem))?;
+        if batch.len() == 0 {
+            break;
+        }
+        for (line, asking) in engine.ask(&batch).into_iter().flatten() {
+            match asking {
+                Ok((asked, Some((id, foot)))) => survey.take(measured(line, asked.point, id, &foot, &engine)),
+                Ok((_, None)) => {} // no maximum distance was asked for
+                Err(complaint) => complaints.take(&complaint),
+            }
+        }
+    }
+    complaints.finish();
+    bar.finish_and_clear();
+    Ok((survey, complaints.count()))
+}
+
+fn measured(line: u64, point: DVec3, entity: EntityId, foot: &FootPoint, engine: &Engine<'_>) -> Measured {
+    Measured {
+        line,
+        point,
+        entity,
+        deviation: foot.signed_distance.unwrap_or(foot.distance),
+        lower_bound: foot.lower_bound,
+        has_side: foot.signed_distance.is_some(),
+        is_certified: engine.is_certified(entity, foot, point),
+    }
+}
+
+/// The diagonal of the entities' control points' box.
+fn size(entities: &[&Entity]) -> f64 {
+    let boxes = entities.iter().map(|entity| entity.definition().control_box());
+    boxes.fold(Aabb::EMPTY, Aabb::join).size()
+}
+
+/// A file's name without its folder.
+fn name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// What the run came to, for the user.
+fn tell(arguments: &ReportArguments, survey: &Survey, bad: u64) {
+    let points: usize = survey.of_entity.values().map(Vec::len).sum();
+    let drawn = match survey.drawn.every {
+        1 => "all drawn".to_owned(),
+        every => format!("one of {every} drawn"),
+    };
+    say(format_args!("{}: {}, {drawn}", arguments.output.display(), counted(points as u64, "point")));
+    say(format_args!("not certified:  {}", survey.uncertified));
+    say(format_args!("bad rows:       {bad}"));
+}
