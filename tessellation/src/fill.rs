@@ -63,7 +63,7 @@ impl Fill<'_> {
     fn trimmed(&mut self, cell: &Cell, outline: &[u32]) {
         let frame = CellFrame::new(cell);
         let mut mesh = ConstrainedDelaunayTriangulation::<Corner>::new();
-        let mut enter = |mesh: &mut ConstrainedDelaunayTriangulation<Corner>, index: u32| {
+        let enter = |mesh: &mut ConstrainedDelaunayTriangulation<Corner>, index: u32| {
             let at = frame.enter(self.grid.place(index));
             mesh.insert(Corner { at, index: Some(index) }).expect("coordinates in a cell are of moderate size")
         };

@@ -66,7 +66,8 @@ pub(crate) struct Polygons {
 
 impl Polygons {
     pub(crate) fn segments(&self) -> Vec<[DVec2; 2]> {
-        let around = |points: &Vec<DVec2>| (0..points.len()).map(|i| [points[i], points[(i + 1) % points.len()]]).collect();
+        let around =
+            |points: &Vec<DVec2>| (0..points.len()).map(|i| [points[i], points[(i + 1) % points.len()]]).collect();
         self.loops.iter().flat_map::<Vec<_>, _>(around).collect()
     }
 }
