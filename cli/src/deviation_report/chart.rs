@@ -86,16 +86,17 @@ pub(super) fn histogram(bars: &Histogram, statistics: Option<&Statistics>, decim
             decimals.at_axis(share * limit),
         );
     }
-    if let Some(statistics) = statistics
-        && statistics.mean.abs() <= limit
-    {
-        let at = x(statistics.mean);
-        let anchor = if at > 330.0 { "end" } else { "start" };
-        let beside = if at > 330.0 { at - 5.0 } else { at + 5.0 };
+    if let Some(statistics) = statistics {
+        let at = x(statistics.mean.clamp(-limit, limit));
+        let is_right = at > (LEFT + RIGHT) / 2.0;
+        let (anchor, beside) = if is_right { ("end", at - 5.0) } else { ("start", at + 5.0) };
+        if statistics.mean.abs() <= limit {
+            let _ = writeln!(svg, "<path class=\"mark\" d=\"M{at:.1} {:.1}V{BOTTOM}\"/>", TOP - 14.0);
+        }
+        let off = if statistics.mean.abs() > limit { ", off the scale" } else { "" };
         let _ = writeln!(
             svg,
-            "<path class=\"mark\" d=\"M{at:.1} {:.1}V{BOTTOM}\"/><text class=\"strong\" x=\"{beside:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">mean {}</text>",
-            TOP - 14.0,
+            "<text class=\"strong\" x=\"{beside:.1}\" y=\"{:.1}\" text-anchor=\"{anchor}\">mean {}{off}</text>",
             TOP - 6.0,
             decimals.show(statistics.mean),
         );

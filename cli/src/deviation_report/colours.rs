@@ -4,15 +4,15 @@
 
 /// From -1 to 1 in equal steps, as red, green and blue from 0 to 255; between them straight.
 pub(super) const STOPS: [[u8; 3]; 9] = [
-    [24, 46, 110],
-    [38, 92, 165],
+    [28, 56, 140],
+    [44, 100, 176],
     [86, 150, 205],
     [165, 208, 230],
     [247, 243, 222],
     [252, 200, 125],
     [240, 132, 66],
     [205, 58, 40],
-    [122, 10, 32],
+    [140, 12, 34],
 ];
 
 /// The colour of a share of the scale; beyond -1 and 1 that of the end.

@@ -116,7 +116,7 @@ fn measured(line: u64, point: DVec3, entity: EntityId, foot: &FootPoint, engine:
 /// The diagonal of the entities' control points' box.
 fn size(entities: &[&Entity]) -> f64 {
     let boxes = entities.iter().map(|entity| entity.definition().control_box());
-    boxes.fold(Aabb::EMPTY, Aabb::join).size()
+    boxes.fold(Aabb::EMPTY, Aabb::join).diagonal()
 }
 
 /// A file's name without its folder.

@@ -129,10 +129,11 @@
       });
     }
     if (!(low[0] <= high[0])) return;
-    camera.target = [0, 1, 2].map((k) => (box.min[k] + box.max[k]) / 2);
-    // room for the colour bar at the right, the same at the left
-    const width = Math.max(0.3, 1 - 240 / Math.max(1, canvas.clientWidth));
-    camera.half = Math.max((high[1] - low[1]) / 2 / 0.9, (high[0] - low[0]) / 2 / aspect() / width, 1e-6 * reach);
+    // beside the colour bar
+    const free = Math.max(0.3, 1 - 112 / Math.max(1, canvas.clientWidth));
+    camera.half = Math.max((high[1] - low[1]) / 2 / 0.9, (high[0] - low[0]) / 2 / aspect() / (0.94 * free), 1e-6 * reach);
+    const aside = camera.half * aspect() * (1 - free);
+    camera.target = [0, 1, 2].map((k) => (box.min[k] + box.max[k]) / 2 + aside * right[k]);
   };
   const pan = (dx, dy) => {
     const { right, up } = axes();
@@ -335,7 +336,7 @@
   const look = () => {
     const dark = !printing && getComputedStyle(root).getPropertyValue("--dark").trim() === "1";
     return dark
-      ? { part: [0.60, 0.64, 0.70], marked: [0.45, 0.68, 0.95], edge: [0.06, 0.07, 0.09], bare: [0.75, 0.79, 0.84], rim: [0.03, 0.04, 0.05], ring: [1, 1, 1] }
+      ? { part: [0.60, 0.64, 0.70], marked: [0.45, 0.68, 0.95], edge: [0.06, 0.07, 0.09], bare: [0.75, 0.79, 0.84], rim: [0.80, 0.83, 0.87], ring: [1, 1, 1] }
       : { part: [0.72, 0.75, 0.80], marked: [0.40, 0.62, 0.90], edge: [0.13, 0.16, 0.20], bare: [0.13, 0.16, 0.20], rim: [0.10, 0.12, 0.15], ring: [0, 0, 0] };
   };
   const ratio = () => canvas.width / Math.max(1, canvas.clientWidth);
@@ -475,7 +476,7 @@
   const digits = (value, places) => (scene.decimals === null ? value.toExponential(3 + places) : value.toFixed(scene.decimals + places));
   // Rounded downwards, so that what is shown is proven too.
   const downwards = (value) => {
-    const places = Math.min(15, (scene.decimals ?? 12) + 6);
+    const places = Math.min(15, (scene.decimals ?? 9) + 6);
     const step = 10 ** places;
     return scene.decimals === null || value * step > 2 ** 52 ? String(value) : (Math.floor(value * step) / step).toFixed(places);
   };
@@ -498,7 +499,7 @@
     const rows = [
       ["line", `${line[index]}`],
       ...["x", "y", "z"].map((axis, k) => [axis, `${position[3 * index + k]}`]),
-      ["deviation", `${value}`],
+      ["deviation", digits(value, 6)],
       ["lower bound", downwards(lowerBound[index])],
       ["face", name === "" ? `${id}` : `${id} ${name}`],
     ];

@@ -132,7 +132,7 @@ impl Report<'_> {
         let gap = ("largest gap".to_owned(), format!("{:.2e}", self.survey.largest_gap));
         let proof = proof.map(|(name, count)| (name.to_owned(), grouped(count))).into_iter().chain([gap]);
         format!(
-            "<div class=\"pairs\">\n{}{}</div>\n<h2 class=\"later\">Proof</h2>\n{}",
+            "<div class=\"pairs\">\n{}{}</div>\n<h2>Proof</h2>\n{}",
             pairs("measures", "Measures", measures),
             pairs("percentiles", "Percentiles", percents),
             pairs("proof", "Proof", proof)

@@ -114,9 +114,9 @@ impl Part {
         let drawn = drawn.collect::<Result<Vec<_>, InvalidChord>>()?;
         let error = drawn.iter().map(|(_, error)| *error).fold(0.0, f64::max);
         let entities: Vec<Drawn> = drawn.into_iter().map(|(drawn, _)| drawn).collect();
-        let Aabb { min, max } = entities.iter().flat_map(Drawn::points).fold(Aabb::EMPTY, |all, p| all.include(*p));
+        let bounds = Aabb::around(entities.iter().flat_map(Drawn::points).copied());
         let triangles = entities.iter().map(|drawn| drawn.mesh().map_or(0, |mesh| mesh.triangles.len())).sum();
-        Ok(Self { entities, centre: 0.5 * (min + max), error, triangles })
+        Ok(Self { entities, centre: bounds.centre(), error, triangles })
     }
 
     /// The entities' ids and names, in their order.
