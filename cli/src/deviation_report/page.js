@@ -521,21 +521,9 @@
 
   const held = new Map();
   let moved = false;
-  let asked = null;
   const at = (event) => {
     const box = canvas.getBoundingClientRect();
     return [event.clientX - box.left, event.clientY - box.top];
-  };
-  const ask = (x, y) => {
-    const first = asked === null;
-    asked = [x, y];
-    if (first) {
-      requestAnimationFrame(() => {
-        const [x, y] = asked;
-        asked = null;
-        if (held.size === 0) tell(pick(x, y), x, y);
-      });
-    }
   };
   canvas.addEventListener("pointerdown", (event) => {
     if (event.isTrusted) canvas.setPointerCapture(event.pointerId);
@@ -547,7 +535,7 @@
     const [x, y] = at(event);
     const before = held.get(event.pointerId);
     if (!before) {
-      if (event.pointerType !== "touch") ask(x, y);
+      if (event.pointerType !== "touch") tell(pick(x, y), x, y);
       return;
     }
     const [dx, dy] = [x - before[0], y - before[1]];
@@ -570,7 +558,7 @@
     const [x, y] = at(event);
     const was = held.delete(event.pointerId);
     if (held.size === 0) canvas.classList.remove("held");
-    if (was && !moved && event.type === "pointerup") ask(x, y);
+    if (was && !moved && event.type === "pointerup") tell(pick(x, y), x, y);
   };
   canvas.addEventListener("pointerup", release);
   canvas.addEventListener("pointercancel", release);
