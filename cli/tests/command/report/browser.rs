@@ -35,10 +35,10 @@ fn shown(workshop: &Workshop, file: &str, size: &str) -> Option<String> {
     Some(String::from_utf8(output.stdout).unwrap())
 }
 
-/// A page of the table with these points, and with a script of the test's own at its end.
-fn page(points: &str, script: &str) -> Workshop {
+/// A page of the table with these points and this scale, and with a script of the test's own at its end.
+fn page(points: &str, scale: &str, script: &str) -> Workshop {
     let workshop = Workshop::new();
-    report(&workshop, points, &["--entity", "2", "--scale", "0.5"]).ends(0, "");
+    report(&workshop, points, &["--entity", "2", "--scale", scale]).ends(0, "");
     let page = workshop.read("report.html");
     let with_script = page.replace("</body>", &format!("<script>{script}</script></body>"));
     workshop.write("report.html", with_script);
@@ -53,7 +53,7 @@ fn root(dom: &str) -> &str {
 
 #[test]
 fn the_script_draws_all_points_and_triangles() {
-    let Some(dom) = shown(&page(POINTS, ""), "report.html", "1200,900") else { return };
+    let Some(dom) = shown(&page(POINTS, "0.5", ""), "report.html", "1200,900") else { return };
     let root = root(&dom);
     for said in ["data-state=\"drawn\"", "data-points=\"4\"", "data-triangles=\"2\""] {
         assert!(root.contains(said), "{said} in {root}");
@@ -87,10 +87,12 @@ fn number(root: &str, name: &str) -> u64 {
 
 #[test]
 fn the_picture_shows_the_part_and_the_points_in_their_colours() {
-    let Some(dom) = shown(&page("x,y,z\n1,1,10.5\n3,3,10.5\n", COUNT), "report.html", "1200,900") else { return };
+    let Some(dom) = shown(&page("x,y,z\n1,1,10.5\n3,3,10.5\n", "0.5", COUNT), "report.html", "1200,900") else {
+        return;
+    };
     let found = ["red", "blue", "any"].map(|name| number(root(&dom), name));
     assert!(found[0] > 40 && found[1] == 0 && found[2] > 20_000, "two points above the table: {found:?}");
-    let dom = shown(&page("x,y,z\n1,1,9.5\n", COUNT), "report.html", "400,800").expect("it was there before");
+    let dom = shown(&page("x,y,z\n1,1,9.96\n", "0.04", COUNT), "report.html", "400,800").expect("it was there before");
     let found = ["red", "blue", "any"].map(|name| number(root(&dom), name));
     assert!(found[0] == 0 && found[1] > 20 && found[2] > 2000, "one point just below it, seen all the same: {found:?}");
 }
@@ -110,7 +112,7 @@ const HOVER: &str = "
 
 #[test]
 fn a_point_under_the_pointer_is_told() {
-    let Some(dom) = shown(&page("x,y,z\n\n2.25,1.5,10.375\n", HOVER), "report.html", "500,700") else { return };
+    let Some(dom) = shown(&page("x,y,z\n\n2.25,1.5,10.375\n", "0.5", HOVER), "report.html", "500,700") else { return };
     let (_, tip) = dom.split_once("id=\"tip\"").expect("a place for what is told");
     let tip = tip.split_once("</div>").unwrap().0;
     assert!(!tip.contains("hidden"), "{tip}");
