@@ -54,6 +54,6 @@ pub use knots::{Break, KnotVector, MAX_DEGREE, Span};
 pub use shapes::{Circle, Cone, Cylinder, Ellipse, Frame, Line, Plane, Sphere, Torus};
 pub use surface::{NurbsSurface, SurfaceData};
 pub use trim::{
-    Cover, InvalidTrim, PlaneCurve, Region, Side, TrimCurve, TrimCurveData, TrimEntry, TrimLoop, TrimLoopData,
-    Trimming, TrimmingData,
+    BoundaryPiece, Cover, InvalidTrim, PlaneCurve, Region, Side, TrimCurve, TrimCurveData, TrimEntry, TrimLoop,
+    TrimLoopData, Trimming, TrimmingData,
 };

@@ -38,6 +38,10 @@ pub enum Place {
     Pole,
     /// The first derivative (of a surface: the normal) vanishes.
     Cusp,
+    /// An end of a p-curve of a trimmed surface's boundary.
+    Vertex,
+    /// The boundary of a trimmed surface.
+    TrimEdge,
     /// A corner of the surface's domain.
     Corner,
     /// The tangent (of a surface: the tangent plane) turns abruptly at a knot.
@@ -78,6 +82,8 @@ pub enum Method {
     ControlPolygon,
     /// All stationary points by a quadtree over the squared gradient in Bernstein form (Xu et al. 2014).
     Bernstein,
+    /// The boundary of a trimmed surface as curves, and the hierarchy of what lies inside.
+    Trimmed,
 }
 
 /// The nearest point of an entity to a query point, with its proof.

@@ -27,6 +27,7 @@ pub(crate) struct ClosedForm {
     reach: f64,
     /// In u and in v; of a surface.
     borders: [Border; 2],
+    has_one_minimum: bool,
 }
 
 /// Where the domain ends in a direction, and the parameters between which nothing is near its ends.
@@ -46,7 +47,7 @@ impl Border {
 }
 
 impl ClosedForm {
-    pub(crate) fn new(analytic: Analytic, definition: &Arc<Definition>) -> Self {
+    pub(crate) fn new(analytic: Analytic, definition: &Arc<Definition>, has_one_minimum: bool) -> Self {
         let (size, reach) = (definition.size(), definition.reach());
         let borders = match &**definition {
             Definition::NurbsCurve(_) => Default::default(),
@@ -54,7 +55,18 @@ impl ClosedForm {
                 [Direction::U, Direction::V].map(|along| Border::of(surface.domain(along)))
             }
         };
-        Self { analytic, definition: Arc::clone(definition), size, reach, borders }
+        Self { analytic, definition: Arc::clone(definition), size, reach, borders, has_one_minimum }
+    }
+
+    /// Whether the whole shape, of which the definition is a part, has one local minimum of the distance at most, but for points from which a circle
+    /// or all of it is equally near.
+    pub(crate) fn has_one_minimum(&self) -> bool {
+        self.has_one_minimum
+    }
+
+    /// Bound of the distance between the definition and the shape, both ways, in the model's unit.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.analytic.deviation()
     }
 
     /// The definition at a proposal's parameters, seen from the query.

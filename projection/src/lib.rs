@@ -17,6 +17,7 @@ mod solver;
 mod stationary;
 mod statistics;
 mod tree;
+mod trimmed;
 mod wave;
 
 pub use answer::{Continuum, FootPoint, Method, Multiplicity, Parameter, ParameterBox, Place, Ties};

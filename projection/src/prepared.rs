@@ -3,7 +3,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::DVec3;
-use perpend_kernel::Definition;
+use perpend_kernel::{Aabb, Definition, Trimming};
 use perpend_knowledge::Record;
 
 use crate::answer::{Continuum, FootPoint, Method, Ties};
@@ -19,6 +19,7 @@ use crate::query::{Query, QueryError, QueryOptions};
 use crate::scratch::Scratch;
 use crate::solver::{Proposer, Solution, Solved, Solver, Tie, unit_normal};
 use crate::stationary::{StationaryOptions, StationaryPoint, StationaryPoints, parameter_box};
+use crate::trimmed::Trimmed;
 use crate::wave::{Wave, WaveSettings};
 
 /// Stationary points closer than this share of the entity's size are not told apart unless a query asks for it.
@@ -33,6 +34,8 @@ pub struct Prepared {
     landmarks: Landmarks,
     plan: Plan,
     closed_form: Option<ClosedForm>,
+    /// What part of the definition counts, where not all of it does.
+    trimmed: Option<Trimmed>,
     /// Built when the first query needs it: where a closed form answers, none may.
     hierarchy: OnceLock<Hierarchy>,
     /// Built when a query first names them.
@@ -58,12 +61,32 @@ impl Prepared {
             landmarks,
             plan,
             closed_form,
+            trimmed: None,
             hierarchy: OnceLock::new(),
             wave: OnceLock::new(),
             exclusion: OnceLock::new(),
             control_polygon: OnceLock::new(),
             bernstein: OnceLock::new(),
         }
+    }
+
+    /// The same of which only a trimmed part counts: the trim was validated against the definition, which is a surface.
+    #[must_use]
+    pub fn with_trimming(self, trimming: Arc<Trimming>) -> Self {
+        let trimmed = Trimmed::new(&self.definition, trimming);
+        Self { trimmed: Some(trimmed), ..self }
+    }
+
+    /// What part of the definition counts, where not all of it does.
+    #[must_use]
+    pub fn trimming(&self) -> Option<&Arc<Trimming>> {
+        self.trimmed.as_ref().map(Trimmed::trimming)
+    }
+
+    /// A box that holds the entity: of the control points, or of those that a trim leaves.
+    #[must_use]
+    pub fn bounds(&self) -> Aabb {
+        self.trimmed.as_ref().map_or_else(|| self.definition.control_box(), Trimmed::bounds)
     }
 
     /// The same with cells and samples as these settings ask, in place of those that the plan's settings give.
@@ -104,6 +127,9 @@ impl Prepared {
     /// the look at pieces that are farther away than it.
     #[must_use]
     pub fn project_near(&self, query: &Query, hint: Option<DVec3>, scratch: &mut Scratch) -> Option<FootPoint> {
+        if let Some(trimmed) = &self.trimmed {
+            return trimmed.project(query, self.closed_form.as_ref(), self.reader(), scratch);
+        }
         let asked = query.options.method.unwrap_or(self.plan.method);
         if let Some(closed_form) = &self.closed_form
             && asked == closed_form.method()
@@ -205,7 +231,7 @@ impl Prepared {
     /// The solver of this method, where it is one that only proposes.
     fn proposer(&self, method: Method) -> Option<&dyn Proposer> {
         match method {
-            Method::Analytic | Method::Hierarchy => None,
+            Method::Analytic | Method::Hierarchy | Method::Trimmed => None,
             Method::Wave => Some(self.wave()),
             Method::Exclusion => Some(self.subdivision(&self.exclusion, Criteria::Selimovic)),
             Method::ControlPolygon => Some(self.subdivision(&self.control_polygon, Criteria::ControlPolygon)),

@@ -8,6 +8,8 @@ use crate::wave::Marks;
 #[derive(Debug, Default)]
 pub struct Scratch {
     pub(crate) hierarchy: Workspace,
+    /// For the boundary of a trimmed surface, which is projected onto while the surface is.
+    pub(crate) boundary: Workspace,
     pub(crate) marks: Marks,
     /// What the queries answered with this memory have cost so far.
     pub statistics: Statistics,

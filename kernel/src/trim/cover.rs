@@ -3,7 +3,7 @@
 use glam::{DVec2, DVec3};
 
 use crate::trim::crossing::{Net, halved, orientation};
-use crate::trim::region::{Piece, Region, Side, hull};
+use crate::trim::region::{BoundaryPiece, Region, Side, hull};
 
 /// How often a piece is halved at most to see whether it meets a box.
 const DEPTH: u32 = 10;
@@ -36,7 +36,7 @@ impl Region {
 }
 
 /// Whether a piece may meet a box.
-fn meets(piece: &Piece, min: DVec2, max: DVec2) -> bool {
+fn meets(piece: &BoundaryPiece, min: DVec2, max: DVec2) -> bool {
     if apart((piece.min, piece.max), (min, max)) {
         return false;
     }

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 use smallvec::SmallVec;
 
-use crate::trim::region::{Piece, hull};
+use crate::trim::region::{BoundaryPiece, hull};
 
 /// What a piece does to the ray from a point.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -32,7 +32,7 @@ struct Part {
 /// A part whose hull lies wholly above, below or left of the ray does not cross it, or not so that it counts; one that lies wholly right of the point crosses it as
 /// often as its ends say. What holds the point in its hull is halved, down to the size of rounding. Ends belong to the ray by one rule (above it,
 /// or not), so that of two pieces that meet in a point just one counts.
-pub(super) fn crossing(piece: &Piece, at: DVec2) -> Crossing {
+pub(super) fn crossing(piece: &BoundaryPiece, at: DVec2) -> Crossing {
     if let Some(known) = outside_hull((piece.min, piece.max), piece.start, piece.end, at) {
         return known;
     }

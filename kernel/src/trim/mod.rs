@@ -13,5 +13,5 @@ mod trimming;
 pub use cover::Cover;
 pub use invalid::InvalidTrim;
 pub use plane_curve::PlaneCurve;
-pub use region::{Region, Side};
+pub use region::{BoundaryPiece, Region, Side};
 pub use trimming::{TrimCurve, TrimCurveData, TrimEntry, TrimLoop, TrimLoopData, Trimming, TrimmingData};

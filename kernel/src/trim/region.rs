@@ -24,28 +24,33 @@ pub enum Side {
 /// closed to the last bit, and no ray slips through.
 #[derive(Debug, Clone)]
 pub struct Region {
-    pub(super) pieces: Vec<Piece>,
+    pub(super) pieces: Vec<BoundaryPiece>,
     min: DVec2,
     max: DVec2,
 }
 
-/// A Bézier piece of the boundary.
+/// A Bézier piece of a region's boundary.
 #[derive(Debug, Clone)]
-pub(super) struct Piece {
-    /// `(w u, w v, w)`.
-    pub(super) points: Vec<DVec3>,
-    /// The ends, in the bits that the neighbours have too.
-    pub(super) start: DVec2,
-    pub(super) end: DVec2,
+pub struct BoundaryPiece {
+    /// The control points, homogeneous: `(w u, w v, w)`.
+    pub points: Vec<DVec3>,
+    /// Where it begins, in the bits in which the piece before it ends.
+    pub start: DVec2,
+    /// Where it ends, in the bits in which the piece after it begins.
+    pub end: DVec2,
+    /// Whether a p-curve of the loop begins where it does; so a straight join over a gap never does.
+    pub begins_curve: bool,
+    /// Whether a p-curve of the loop ends where it does.
+    pub ends_curve: bool,
     /// The box of the control points.
     pub(super) min: DVec2,
     pub(super) max: DVec2,
 }
 
-impl Piece {
+impl BoundaryPiece {
     pub(super) fn new(points: Vec<DVec3>, start: DVec2, end: DVec2) -> Self {
         let (min, max) = hull(&points, start, end);
-        Self { points, start, end, min, max }
+        Self { points, start, end, begins_curve: false, ends_curve: false, min, max }
     }
 
     fn straight(start: DVec2, end: DVec2) -> Self {
@@ -69,12 +74,12 @@ pub(super) fn hull(points: &[DVec3], start: DVec2, end: DVec2) -> (DVec2, DVec2)
 
 impl Region {
     pub(super) fn new(loops: &[TrimLoop]) -> Self {
-        let mut pieces: Vec<Piece> = Vec::new();
+        let mut pieces: Vec<BoundaryPiece> = Vec::new();
         for one in loops {
             let mut at = one.curves[one.curves.len() - 1].curve.end();
             for TrimCurve { curve, .. } in &one.curves {
                 if at != curve.start() {
-                    pieces.push(Piece::straight(at, curve.start()));
+                    pieces.push(BoundaryPiece::straight(at, curve.start()));
                 }
                 at = curve.start();
                 let parts = curve.pieces();
@@ -83,7 +88,11 @@ impl Region {
                     let points: Vec<DVec3> = part.points.iter().map(|h| DVec3::new(h.x, h.y, h.w)).collect();
                     let tip = points[points.len() - 1];
                     let end = if k == last { curve.end() } else { tip.truncate() / tip.z };
-                    pieces.push(Piece::new(points, at, end));
+                    pieces.push(BoundaryPiece {
+                        begins_curve: k == 0,
+                        ends_curve: k == last,
+                        ..BoundaryPiece::new(points, at, end)
+                    });
                     at = end;
                 }
             }
@@ -97,6 +106,12 @@ impl Region {
     #[must_use]
     pub fn bounds(&self) -> (DVec2, DVec2) {
         (self.min, self.max)
+    }
+
+    /// The boundary, loop after loop; within a loop every piece begins where the one before it ends.
+    #[must_use]
+    pub fn pieces(&self) -> &[BoundaryPiece] {
+        &self.pieces
     }
 
     /// Where parameters lie.
@@ -124,7 +139,7 @@ impl Region {
     /// Whether no point is inside, as far as a grid of the domain and points beside the boundary tell.
     pub(super) fn is_empty(&self, surface: &NurbsSurface) -> bool {
         let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|direction| surface.domain(direction));
-        let beside = |piece: &Piece| {
+        let beside = |piece: &BoundaryPiece| {
             let step = 1e-7 * DVec2::new(u1 - u0, v1 - v0);
             let middle = piece.points.iter().fold(DVec3::ZERO, |sum, point| sum + *point);
             let middle =

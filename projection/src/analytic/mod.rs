@@ -129,6 +129,11 @@ impl Analytic {
         })
     }
 
+    /// Bound of the distance between the definition and the shape, in the model's unit.
+    pub(crate) fn deviation(&self) -> f64 {
+        self.deviation / self.axes.local(1.0)
+    }
+
     /// Whether the shape is an ellipse or an arc of one, whose parameter is not known as exactly as its points.
     pub(crate) fn is_elliptic(&self) -> bool {
         matches!(&self.shape, Shape::Planar(planar) if planar.is_elliptic())

@@ -9,7 +9,7 @@ mod settings;
 use std::sync::Arc;
 
 use perpend_kernel::Definition;
-use perpend_knowledge::Record;
+use perpend_knowledge::{Kind, Record};
 
 use self::class::Class;
 use crate::analytic::Analytic;
@@ -34,6 +34,16 @@ pub(crate) fn dispatch(definition: &Arc<Definition>, record: Option<&Record>, la
     let method = if analytic.is_some() && class.gap <= gap { Method::Analytic } else { Method::Hierarchy };
     reasons.push(class.reason(method, analytic.is_some(), gap));
     let settings = settings::settings(definition, record, landmarks, gap, &mut reasons);
-    let closed_form = analytic.map(|analytic| ClosedForm::new(analytic, definition));
+    let closed_form = analytic.map(|analytic| ClosedForm::new(analytic, definition, has_one_minimum(&class.kind)));
     Dispatched { plan: Plan { method, settings, reasons }, closed_form }
+}
+
+/// Whether the distance to the whole shape has one local minimum at most, but for points from which a circle or all of it is equally near: seen along
+/// a circle of the shape it has one, and so it has along what the circles are swept along.
+fn has_one_minimum(kind: &Kind) -> bool {
+    match kind {
+        Kind::Plane { .. } | Kind::Sphere { .. } | Kind::Cylinder { .. } | Kind::Cone { .. } => true,
+        Kind::Torus { major_radius, minor_radius, .. } => minor_radius < major_radius,
+        _ => false,
+    }
 }

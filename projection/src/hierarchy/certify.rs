@@ -24,7 +24,8 @@
 //! Reductions may give away a tenth of the margin that the form has at a foot; whether they gave too much, the closing test decides.
 
 use fearless_simd::Level;
-use glam::DVec3;
+use glam::{DVec2, DVec3};
+use perpend_kernel::{Region, Side};
 
 use super::ROUNDING;
 use super::bound::{least_from, value_error};
@@ -76,6 +77,8 @@ pub(super) struct Part<'a> {
     pub index: u32,
     /// What it covers of the prepared leaf.
     pub within: Domain,
+    /// Of a leaf that the boundary of a trim crosses: the region to which its points belong, or not.
+    pub region: Option<&'a Region>,
 }
 
 impl Part<'_> {
@@ -113,9 +116,21 @@ impl Part<'_> {
         self.offer(&found, state);
     }
 
-    /// Tells the state of a point of the part.
+    /// Tells the state of a point of the part, unless that is trimmed away.
     pub(super) fn offer(&self, found: &Found, state: &mut State<'_>) {
-        state.offer(self.foot(found));
+        if self.counts(found.s, found.t) {
+            state.offer(self.foot(found));
+        } else {
+            state.rejected = state.rejected.min(found.distance);
+        }
+    }
+
+    /// Whether a point of the part belongs to the entity: of a leaf that is crossed by a trim, not all do.
+    pub(super) fn counts(&self, s: f64, t: f64) -> bool {
+        self.region.is_none_or(|region| {
+            let (u, v) = self.leaf.parameters(s, t);
+            region.side(DVec2::new(u, v)) != Side::Outside
+        })
     }
 }
 
@@ -145,6 +160,9 @@ pub(super) fn certify(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory
         if proof.is_stale(state) {
             proof.restart(state, memory);
             continue;
+        }
+        if part.region.is_some() && state.rejected < state.tau() {
+            return Outcome::Stopped; // nearer points that do not count: no form can prove the leaf
         }
         match proof.examine(cell, state, memory) {
             Verdict::Closed => {}
@@ -316,9 +334,10 @@ impl Proof<'_> {
         let start = cell.domain.clamp(s, t);
         let search = Search { domain: cell.domain, start, evaluations: 16, decrease: 1e-3 * state.margin() };
         let (upper, goal, formed) = (state.best.distance, state.goal, self.formed);
+        let is_whole_entity = self.part.region.is_none();
         let mut closed = false;
         let found = newton::search(leaf, self.x, search, &mut state.done, &mut |found| {
-            let best = found.distance.min(upper);
+            let best = if is_whole_entity { found.distance.min(upper) } else { upper };
             let (tau, reach) = (goal.tau(best), goal.reach(best));
             if leaf.rational && tau < formed - 0.5 * goal.gap {
                 return false; // the form will be made again

@@ -30,8 +30,14 @@ fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut Stat
     if let Some((s, t)) = domain.corner() {
         let corner = leaf.corner(s, t);
         let distance = corner.distance(x);
+        let counts = part.counts(s, t);
         let (s, t) = part.parameters(s, t);
-        state.offer(Foot { leaf: part.index, s, t, next: (s, t), point: corner + leaf.origin, distance });
+        let foot = Foot { leaf: part.index, s, t, next: (s, t), point: corner + leaf.origin, distance };
+        if counts {
+            state.offer(foot);
+        } else {
+            state.rejected = state.rejected.min(distance);
+        }
         let tau = state.tau();
         return (distance - tau) * (distance + tau) >= square_error(leaf, distance);
     }
@@ -43,7 +49,7 @@ fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut Stat
     let (s, t) = if state.best.leaf == part.index { state.best.next } else { leaf.linear_guess(x) };
     let decrease = 1e-3 * state.margin();
     let search = Search { domain, start: domain.clamp(s, t), evaluations: EVALUATIONS, decrease };
-    let (upper, goal) = (state.best.distance, state.goal);
+    let (upper, goal, is_whole_entity) = (state.best.distance, state.goal, part.region.is_none());
     let mut closed = false;
     let found = newton::search_within(
         simd,
@@ -54,7 +60,7 @@ fn closes_within<S: Simd>(simd: S, part: Part<'_>, first: bool, state: &mut Stat
         #[inline(always)]
         |found| {
             let Some(curvature) = curvature else { return false };
-            let best = found.distance.min(upper);
+            let best = if is_whole_entity { found.distance.min(upper) } else { upper };
             let (tau, reach) = (goal.tau(best), goal.reach(best));
             let least = nearest_from(leaf, x, found, domain, curvature);
             closed |= least >= tau * tau;

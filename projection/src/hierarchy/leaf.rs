@@ -14,7 +14,7 @@ use super::frame::power_of_two_below;
 use super::jet::Jet;
 use super::oriented_box::OrientedBox;
 use super::piece::Piece;
-use super::ranges::Ranges;
+use super::ranges::{Ranges, Slopes};
 
 /// A piece ready for queries. All coordinates are the entity's own, and `net` is relative to `origin`.
 #[derive(Debug)]
@@ -109,6 +109,11 @@ impl Leaf {
             let weights = (self.lightest, self.heaviest);
             Box::new(Ranges::new(self.shape(), self.oriented.axes(), self.radius, weights))
         })
+    }
+
+    /// The ranges of the slopes of the squared distance.
+    pub(super) fn slopes(&self) -> Slopes {
+        Slopes::new(self.shape(), self.oriented.axes(), self.radius, (self.lightest, self.heaviest))
     }
 
     /// The tables of the form; made when first asked for, as the ranges prove most leaves.

@@ -22,6 +22,7 @@
 mod bound;
 mod certify;
 mod convex;
+mod crossed;
 #[cfg(test)]
 pub(crate) mod double_double;
 mod form;
@@ -32,6 +33,7 @@ mod leaf;
 mod net;
 mod newton;
 mod oriented_box;
+mod patches;
 mod piece;
 mod quotient;
 mod ranges;
@@ -44,13 +46,16 @@ mod walk;
 use std::sync::OnceLock;
 
 use fearless_simd::Level;
-use glam::DVec3;
-use perpend_kernel::{Aabb, Definition, cartesian};
+use glam::{DVec3, DVec4};
+use perpend_kernel::{Aabb, Definition, Direction, cartesian};
 
 use self::certify::{Memory, Part};
+use self::crossed::Trim;
+pub(crate) use self::crossed::{BoundaryPoint, TrimmedFoot};
 pub(crate) use self::frame::Frame;
 use self::leaf::Leaf;
 use self::newton::Domain;
+pub(crate) use self::patches::{Patch, Patches};
 use self::piece::Piece;
 use self::state::Foot;
 pub(crate) use self::ties::TieSet;
@@ -88,6 +93,8 @@ pub(crate) struct Hierarchy {
     domain: [(f64, f64); 2],
     /// How far rounding may have moved the entity on its way into the leaves: `dg`.
     reserve: f64,
+    /// Of a trimmed surface: what the trim does to the leaves.
+    trim: Option<Trim>,
 }
 
 /// Working memory of the solver.
@@ -155,11 +162,25 @@ impl Hierarchy {
         };
         let mut pieces = Piece::all(definition, &net, rational);
         for cusp in cusps {
-            pieces = pieces.into_iter().flat_map(|piece| piece.cut(*cusp)).collect();
+            pieces = pieces.into_iter().flat_map(|piece| piece.cut(Direction::U, *cusp)).collect();
         }
+        Self::of_pieces(frame, split_bent(pieces, &mut Vec::new()), Frame::reserve(degree, reach), level)
+    }
+
+    /// Bézier curves with homogeneous control points in a frame's coordinates: curve `k` covers the parameters `[k, k + 1]`. `reserve` says how far rounding has
+    /// moved them already, in these coordinates.
+    pub(crate) fn of_curves(frame: Frame, nets: Vec<Vec<DVec4>>, reserve: f64) -> Self {
+        let degree = nets.iter().map(|net| net.len() - 1).max().unwrap_or(1);
+        let points = nets.iter().flatten().map(|h| cartesian(*h).length());
+        let reserve = reserve + Frame::reserve((degree, 0), points.fold(0.0, f64::max));
+        let pieces =
+            nets.into_iter().enumerate().map(|(k, net)| Piece::curve(net, (k as f64, (k + 1) as f64))).collect();
+        Self::of_pieces(frame, split_bent(pieces, &mut Vec::new()), reserve, Level::new())
+    }
+
+    fn of_pieces(frame: Frame, pieces: Vec<Piece>, reserve: f64, level: Level) -> Self {
         let mut points = Vec::new();
-        let leaves: Vec<Leaf> =
-            split_bent(pieces, &mut points).into_iter().map(|piece| Leaf::new(piece, level, &mut points)).collect();
+        let leaves: Vec<Leaf> = pieces.into_iter().map(|piece| Leaf::new(piece, level, &mut points)).collect();
         let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
         let whole = |range: fn(&Leaf) -> (f64, f64)| {
             leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))
@@ -171,7 +192,8 @@ impl Hierarchy {
             parameters: OnceLock::new(),
             leaves,
             domain,
-            reserve: Frame::reserve(degree, reach),
+            reserve,
+            trim: None,
         }
     }
 
@@ -236,7 +258,8 @@ impl Hierarchy {
 
     /// All of a leaf.
     fn part(&self, index: u32) -> Part<'_> {
-        Part { leaf: &self.leaves[index as usize], index, within: Domain::WHOLE }
+        let region = self.trim.as_ref().and_then(|trim| trim.crossing(index));
+        Part { leaf: &self.leaves[index as usize], index, within: Domain::WHOLE, region }
     }
 
     /// A solution in the model's unit.

@@ -1,6 +1,6 @@
 //! Bézier pieces in an entity's own coordinates, and when to split them before any query.
 
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 use perpend_kernel::bezier::{curve_pieces, surface_pieces};
 use perpend_kernel::{Definition, Direction, cartesian};
 
@@ -43,6 +43,16 @@ impl Piece {
                     .collect()
             }
         }
+    }
+
+    /// A curve over a range of parameters. Where its weights are one but for rounding they are taken as such.
+    pub(super) fn curve(mut net: Vec<DVec4>, u: (f64, f64)) -> Self {
+        let weight = net[0].w;
+        let rational = net.iter().any(|h| (h.w - weight).abs() > 1e-13 * weight);
+        if !rational {
+            net.iter_mut().for_each(|h| *h = (h.truncate() / h.w).extend(1.0));
+        }
+        Self { degree: (net.len() - 1, 0), net, rational, u, v: (0.0, 0.0) }
     }
 
     /// Its control points, in place of what `points` held.
@@ -88,24 +98,59 @@ impl Piece {
         [low, high]
     }
 
-    /// The two parts of a curve's piece before and after the parameter `u`; the piece itself where it does not hold `u` inside.
-    pub(super) fn cut(self, u: f64) -> Vec<Self> {
-        let (from, to) = self.u;
-        if u <= from || u >= to {
+    /// The two parts before and after a parameter in a direction; the piece itself where it does not hold the parameter inside.
+    pub(super) fn cut(self, direction: Direction, at: f64) -> Vec<Self> {
+        let (from, to) = self.range(direction);
+        if at <= from || at >= to {
             return vec![self];
         }
         // two quotients: the ratio of weights keeps its relative accuracy
-        let (after, before) = ((u - from) / (to - from), (to - u) / (to - from));
-        let degree = self.degree.0;
+        let (after, before) = ((at - from) / (to - from), (to - at) / (to - from));
+        let (p, q) = self.degree;
+        let width = q + 1;
+        let (lines, degree, step, across) = match direction {
+            Direction::U => (width, p, width, 1),
+            Direction::V => (p + 1, q, 1, width),
+        };
         let (mut low, mut high) = (self.clone(), self);
-        for k in 1..=degree {
-            for i in (k..=degree).rev() {
-                low.net[i] = before * low.net[i - 1] + after * low.net[i];
+        for line in 0..lines {
+            let index = |k: usize| line * across + k * step;
+            for k in 1..=degree {
+                for i in (k..=degree).rev() {
+                    low.net[index(i)] = before * low.net[index(i - 1)] + after * low.net[index(i)];
+                }
+                high.net[index(degree - k)] = low.net[index(degree)];
             }
-            high.net[degree - k] = low.net[degree];
         }
-        (low.u.1, high.u.0) = (u, u);
+        (low.range_mut(direction).1, high.range_mut(direction).0) = (at, at);
         vec![low, high]
+    }
+
+    pub(super) fn range(&self, direction: Direction) -> (f64, f64) {
+        match direction {
+            Direction::U => self.u,
+            Direction::V => self.v,
+        }
+    }
+
+    fn range_mut(&mut self, direction: Direction) -> &mut (f64, f64) {
+        match direction {
+            Direction::U => &mut self.u,
+            Direction::V => &mut self.v,
+        }
+    }
+
+    /// The part of a surface's piece within a box of parameters; none where they have no area in common.
+    pub(super) fn within(mut self, min: DVec2, max: DVec2) -> Option<Self> {
+        for (axis, direction) in [Direction::U, Direction::V].into_iter().enumerate() {
+            let (from, to) = self.range(direction);
+            if to <= min[axis] || from >= max[axis] {
+                return None;
+            }
+            self = self.cut(direction, max[axis]).swap_remove(0);
+            self = self.cut(direction, min[axis]).pop()?;
+        }
+        Some(self)
     }
 
     /// The direction in which the control net is longer.

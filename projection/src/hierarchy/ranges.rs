@@ -140,6 +140,64 @@ impl Along {
     }
 }
 
+/// Ranges of the slopes of the squared distance to a leaf: where one of them has a sign, no stationary point lies in the leaf.
+#[derive(Debug)]
+pub(super) struct Slopes {
+    s: Affine,
+    t: Affine,
+    /// What rounding is multiplied with in either direction.
+    factors: [f64; 2],
+}
+
+impl Slopes {
+    /// As [`Ranges::new`].
+    pub(super) fn new(leaf: Shape<'_>, axes: &DMat3, radius: f64, weights: (f64, f64)) -> Self {
+        let Layout { m, n } = leaf.layout();
+        let factors = [m as f64, n as f64];
+        if weights.1 > MOST_UNEVEN * weights.0 {
+            let unknown = Affine { middle: [0.0; 4], extent: [f32::INFINITY; 4] };
+            return Self { s: unknown, t: unknown, factors };
+        }
+        if leaf.rational {
+            let Boxes { p, ps, pt, .. } = Boxes::around(leaf, axes, radius, weights);
+            let slope = |first: &Aabb| Affine::of(twice(&[dot(&p, first)]), first);
+            return Self { s: slope(&ps), t: slope(&pt), factors };
+        }
+        let (g, width) = (turned(leaf, axes), n + 1);
+        let (mut s, mut t) = (Hull::EMPTY, Hull::EMPTY);
+        for i in 0..=m {
+            for j in 0..=n {
+                let at = i * width + j;
+                if i < m {
+                    s.add(g[at + width] - g[at]);
+                }
+                if j < n {
+                    t.add(g[at + 1] - g[at]);
+                }
+            }
+        }
+        Self { s: s.times(factors[0]), t: t.times(factors[1]), factors }
+    }
+
+    /// The signs that the slopes in s and in t have all over the leaf; 0 where one may vanish.
+    pub(super) fn signs(&self, view: &View) -> [f64; 2] {
+        [(&self.s, self.factors[0]), (&self.t, self.factors[1])].map(|(slope, factor)| {
+            let (middle, extent) = slope.at(view);
+            if middle.abs() - extent > factor * view.rounding { middle.signum() } else { 0.0 }
+        })
+    }
+}
+
+/// The coefficients of a polynomial leaf's form, with their vectors along the axes.
+fn turned(leaf: Shape<'_>, axes: &DMat3) -> Vec<DVec4> {
+    let Coefficients { squares, vectors } = Coefficients::of(leaf);
+    let turned = squares.iter().zip(&vectors).map(|(c0, c1)| {
+        let c1 = *axes * c1.truncate();
+        DVec4::new(*c0, c1.x, c1.y, c1.z)
+    });
+    turned.collect()
+}
+
 /// Ranges of the derivatives of the squared distance to a leaf.
 #[derive(Debug)]
 pub(super) struct Ranges {
@@ -237,12 +295,8 @@ impl Ranges {
 
     /// From the coefficients of a polynomial leaf's form.
     fn polynomial(mut self, leaf: Shape<'_>, axes: &DMat3) -> Self {
-        let (Layout { m, n }, Coefficients { squares, vectors }) = (leaf.layout(), Coefficients::of(leaf));
-        let turned = squares.iter().zip(&vectors).map(|(c0, c1)| {
-            let c1 = *axes * c1.truncate();
-            DVec4::new(*c0, c1.x, c1.y, c1.z)
-        });
-        let (g, width): (Vec<DVec4>, usize) = (turned.collect(), n + 1);
+        let (Layout { m, n }, g) = (leaf.layout(), turned(leaf, axes));
+        let width = n + 1;
         let lines = |degree: usize, step: usize, across: usize| Lines { g: &g, degree, step, across };
         self.s = lines(m, width, 1).along(0..width);
         if n > 0 {

@@ -61,6 +61,8 @@ pub(super) struct State<'m> {
     pub neighbours: &'m mut Vec<Candidate>,
     /// The least lower bound of the boxes that were left open.
     pub open: f64,
+    /// The distance of the nearest point that was met outside the trim since this was last set.
+    pub rejected: f64,
     /// Splits that are left.
     pub work: u32,
     pub done: Work,

@@ -73,7 +73,7 @@ impl Hierarchy {
         for candidate in candidates.iter() {
             let leaf = &self.leaves[candidate.item as usize];
             if leaf.box_distance_squared(state.point) <= squared(reach) {
-                let part = Part { leaf, index: candidate.item, within: Domain::WHOLE };
+                let part = Part { leaf, index: candidate.item, within: Domain::WHOLE, region: None };
                 self.sift(part, reach, coincidence, &mut state, &mut feet, &mut undecided);
             }
         }
@@ -176,7 +176,7 @@ impl Hierarchy {
                 let leaf = &self.leaves[u.leaf as usize];
                 let start = (0.5 * (u.domain.s.0 + u.domain.s.1), 0.5 * (u.domain.t.0 + u.domain.t.1));
                 let found = converge(leaf, state.point - leaf.origin, Domain::WHOLE, start, state);
-                Part { leaf, index: u.leaf, within: Domain::WHOLE }.foot(&found)
+                Part { leaf, index: u.leaf, within: Domain::WHOLE, region: None }.foot(&found)
             })
             .collect();
         let best = *feet.iter().min_by(|a, b| a.distance.total_cmp(&b.distance))?;

@@ -31,13 +31,14 @@ impl Hierarchy {
             met,
             neighbours,
             open: f64::INFINITY,
+            rejected: f64::INFINITY,
             work: query.options.work,
             done: Work::default(),
         }
     }
 
     /// What the proof is to reach, as far as a point at that distance tells.
-    fn goal(&self, query: &Query, best: &Foot) -> Goal {
+    pub(super) fn goal(&self, query: &Query, best: &Foot) -> Goal {
         let scale = self.frame.scale;
         // Whether anything is within a maximum distance is told as finely as by default, however wide the gap.
         let (wanted, finest) = match query.options.max_distance {
@@ -50,7 +51,7 @@ impl Hierarchy {
         // A fiftieth is kept for the foot's parameters, which are rounded after the proof.
         let left = 0.98 * asked - 2.0 * self.reserve - 20.0 * ROUNDING * self.frame.enter(query.point).length();
         let gap = if left < 0.5 * asked {
-            let degree = self.leaves[best.leaf as usize].degree;
+            let degree = self.leaves.get(best.leaf as usize).unwrap_or(&self.leaves[0]).degree;
             left.max(40.0 * rounding_factor(degree) * ROUNDING * best.distance + 2.0 * self.reserve)
         } else {
             left
@@ -96,7 +97,9 @@ impl Hierarchy {
                 let part = self.part(candidate.item);
                 if candidate.distance_squared < squared(state.tau()) {
                     let seen = visited.is_some_and(|visited| visited.index == candidate.item);
-                    if seen || !glance::closes(part, false, state) {
+                    if part.region.is_some() {
+                        self.close_crossed(part, state, memory);
+                    } else if seen || !glance::closes(part, false, state) {
                         close(part, state, memory, 0);
                     }
                 } else if candidate.distance_squared < squared(state.reach()) {
@@ -123,7 +126,7 @@ impl Hierarchy {
 }
 
 /// Proves a part by its form, refining its vector piece where the form alone does not do it.
-fn close(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory, depth: u32) {
+pub(super) fn close(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory, depth: u32) {
     // where even a leaf without extent would drown in rounding, refining is in vain
     let floor = rounding_bound(part.leaf.degree, state.best.distance, 0.0, state.tau(), 1.0);
     let last = depth >= REFINED_DEPTH || floor > state.margin();
@@ -140,7 +143,7 @@ fn close(part: Part<'_>, state: &mut State<'_>, memory: &mut Memory, depth: u32)
     let (direction, halves) = part.leaf.refine();
     let within = part.within.halves(direction);
     let mut parts = [0, 1].map(|k| {
-        let part = Part { leaf: &halves[k], index: part.index, within: within[k] };
+        let part = Part { leaf: &halves[k], index: part.index, within: within[k], region: None };
         (part.leaf.box_distance_squared(state.point), part)
     });
     if parts[1].0 < parts[0].0 {

@@ -1,0 +1,256 @@
+//! Faces: from what a file says to a carrier and its trim.
+//!
+//! The edges of a face are followed in coordinates of its surface ([`carrier`], [`trace`]) and joined to rings over seams and poles
+//! ([`chain`]); closed surfaces are cut open where the rings ask for it ([`open`]); as much of the surface as the rings need becomes a NURBS
+//! ([`window`]), and the rings p-curves in its parameters ([`fit`]).
+
+mod carrier;
+mod chain;
+mod edge;
+mod fit;
+mod numeric;
+mod open;
+#[cfg(test)]
+mod tests;
+mod trace;
+mod turn;
+mod window;
+
+use glam::DVec2;
+use perpend::kernel::{InvalidEdit, TrimCurveData};
+use perpend::{Aabb, InvalidDefinition, NurbsCurve, NurbsSurface, Shape};
+
+use carrier::Carrier;
+use chain::Ring;
+use fit::{Fit, Flat};
+use window::Window;
+
+pub(crate) use edge::edge_curve;
+
+use crate::source::{SourceFace, SourceLoop};
+
+/// What can be told apart in a file, as a share of a face's size, where the file does not say more.
+const RESOLUTION: f64 = 1e-6;
+
+/// A tolerance of the file beyond this share of a face's size is not believed.
+const COARSEST: f64 = 1e-4;
+
+/// The largest gap between two edges of a loop that is closed by a straight join, as a share of the face's size.
+const WIDEST_GAP: f64 = 1e-2;
+
+/// A face as a model takes it.
+#[derive(Debug, Clone)]
+pub(crate) struct BuiltFace {
+    /// The carrier.
+    pub(crate) surface: NurbsSurface,
+    /// The analytic shape whose exact form the carrier is.
+    pub(crate) shape: Option<Shape>,
+    /// The outward normal is `-(S_u × S_v)`.
+    pub(crate) reversed: bool,
+    /// How far the edges lie from the images of their p-curves at most, and at least the file's tolerance.
+    pub(crate) tolerance: f64,
+    /// The loops, with the material on the left.
+    pub(crate) loops: Vec<BuiltLoop>,
+}
+
+/// A loop of p-curves, each beginning in the bits in which the one before it ends.
+#[derive(Debug, Clone)]
+pub(crate) struct BuiltLoop {
+    pub(crate) outer: bool,
+    /// Each with the index of its edge; none where it closes the loop along a seam or a pole.
+    pub(crate) curves: Vec<(TrimCurveData, Option<usize>)>,
+}
+
+/// Why an edge or a face cannot be built.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+pub(crate) enum FaceError {
+    #[error("edge #{entity}: {reason}")]
+    Edge { entity: u64, reason: String },
+    #[error("the cone's half-angle is {0}; it must lie strictly between 0 and a right angle")]
+    HalfAngle(f64),
+    #[error("the torus' minor radius, {minor}, is above its major one, {major}: it intersects itself")]
+    SpindleTorus { major: f64, minor: f64 },
+    #[error("the profile is a hyperbola or a parabola without ends")]
+    UnboundedProfile,
+    #[error("its loops bound no part of its surface")]
+    Unbounded,
+    #[error("it has no extent along one of its surface's parameters")]
+    Empty,
+    #[error("a loop is open: {gap:e} between edge #{from} and edge #{to}")]
+    Open { from: u64, to: u64, gap: f64 },
+    #[error(transparent)]
+    Definition(#[from] InvalidDefinition),
+    #[error(transparent)]
+    Edit(#[from] InvalidEdit),
+}
+
+/// Builds a face from the curves of the part's edges ([`edge_curve`], in their order); `tolerance` is the file's uncertainty, a length.
+///
+/// # Errors
+///
+/// An edge that it uses has no curve; its surface is none; its loops are open or bound nothing.
+pub(crate) fn build(
+    face: &SourceFace,
+    curves: &[Result<NurbsCurve, FaceError>],
+    tolerance: f64,
+) -> Result<BuiltFace, FaceError> {
+    let mut used: Vec<usize> = Vec::new();
+    let mut vertices = Vec::new();
+    for one in &face.loops {
+        match one {
+            SourceLoop::Edges { uses, .. } => used.extend(uses.iter().map(|one| one.edge)),
+            SourceLoop::Vertex(vertex) => vertices.push(*vertex),
+        }
+    }
+    used.sort_unstable();
+    used.dedup();
+    // the face's own edges, numbered from 0
+    let own = used.iter().map(|edge| curves[*edge].clone()).collect::<Result<Vec<_>, _>>()?;
+    let index = |edge: usize| used.binary_search(&edge).expect("an edge of the face");
+    let samples: Vec<glam::DVec3> = own
+        .iter()
+        .flat_map(|curve| {
+            let (a, b) = curve.domain();
+            (0..=32).map(move |k| curve.point(a + (b - a) * f64::from(k) / 32.0))
+        })
+        .chain(vertices)
+        .collect();
+    let mut size = Aabb::around(samples.iter().copied()).diagonal();
+    if own.is_empty() {
+        size = size_alone(&face.surface);
+    }
+    let apart = tolerance.min(COARSEST * size).max(RESOLUTION * size);
+    let carrier = Carrier::new(&face.surface, &samples, size, apart)?;
+    let left = if carrier.normal_kept == face.same_sense { 1.0 } else { -1.0 };
+    let mut rings: Vec<Ring> = Vec::new();
+    for one in &face.loops {
+        let SourceLoop::Edges { uses, .. } = one else { continue };
+        let pieces: Vec<_> =
+            uses.iter().flat_map(|one| trace::trace(&carrier, &own, index(one.edge), one.forward)).collect();
+        if pieces.is_empty() {
+            continue;
+        }
+        let ring = chain::ring(&carrier, pieces, left);
+        rings.push(if left > 0.0 { ring } else { ring.reversed() });
+    }
+    if carrier.periods == [None; 2] && !rings.is_empty() {
+        rings = nested(rings).into_iter().map(|(ring, _)| ring).collect();
+    }
+    let mut off = 0.0_f64;
+    for piece in rings.iter().flat_map(|ring| &ring.pieces) {
+        if let Some(edge) = piece.edge {
+            for (t, at) in piece.t.iter().zip(&piece.at) {
+                off = off.max(carrier.point(*at).distance(own[edge].point(*t)));
+            }
+        }
+    }
+    let opened = match open::open(&carrier, &own, rings.clone()) {
+        // a file with its loops the wrong way round
+        Err(FaceError::Unbounded) => open::open(&carrier, &own, rings.into_iter().map(Ring::reversed).collect())?,
+        opened => opened?,
+    };
+    let mut rings = opened.rings;
+    if rings.is_empty() {
+        rings.push(Ring { pieces: whole_domain(&carrier) });
+    }
+    let window = Window::new(&carrier, &rings, opened.full)?;
+    let fit_tolerance = (0.1 * tolerance).min(1e-7 * size).max(1e-12 * size);
+    let fit = Fit { carrier: &carrier, window: &window, curves: &own, tolerance: fit_tolerance };
+    let mut loops = Vec::new();
+    for (ring, outer) in nested(rings) {
+        let flats: Vec<Flat> = ring.pieces.iter().map(|piece| fit.curve(piece)).collect();
+        let flats = closed(&window, flats, WIDEST_GAP * size)?;
+        let curves = flats.into_iter().map(|flat| {
+            let edge = flat.edge.map(|edge| used[edge]);
+            (flat.data(), edge)
+        });
+        loops.push(BuiltLoop { outer, curves: curves.collect() });
+    }
+    let reversed = left < 0.0;
+    let tolerance = tolerance.max(1.5 * off + fit_tolerance);
+    Ok(BuiltFace { surface: window.surface, shape: window.shape, reversed, tolerance, loops })
+}
+
+/// The size of a surface that is a whole face.
+fn size_alone(surface: &crate::source::SourceSurface) -> f64 {
+    use crate::source::SourceSurface;
+    match surface {
+        SourceSurface::Sphere { radius, .. } => 2.0 * radius,
+        SourceSurface::Torus { major, minor, .. } => 2.0 * (major + minor),
+        SourceSurface::Nurbs(surface) => surface.control_box().diagonal(),
+        SourceSurface::Revolution { profile: crate::source::SourceCurve::Nurbs(profile), .. } => {
+            profile.control_box().diagonal()
+        }
+        _ => 1.0,
+    }
+}
+
+/// The edges of a domain that bounds the face by itself.
+fn whole_domain(carrier: &Carrier) -> Vec<trace::Piece> {
+    let [(u0, u1), (v0, v1)] = carrier.limits;
+    let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1), (u0, v0)].map(|(u, v)| DVec2::new(u, v));
+    corners.windows(2).map(|pair| trace::Piece::join(pair[0], pair[1])).collect()
+}
+
+/// Rings with the material on their left, and whether they bound it from outside: those inside an odd number of others do not.
+fn nested(rings: Vec<Ring>) -> Vec<(Ring, bool)> {
+    let polygons: Vec<Vec<DVec2>> =
+        rings.iter().map(|ring| ring.pieces.iter().flat_map(|piece| piece.at.iter().copied()).collect()).collect();
+    let is_outer: Vec<bool> = (0..rings.len())
+        .map(|i| {
+            let around = (0..rings.len()).filter(|j| *j != i && is_within(&polygons[i], &polygons[*j]));
+            around.count() % 2 == 0
+        })
+        .collect();
+    let turned = |(ring, outer): (Ring, bool)| {
+        let is_left = (ring.area() > 0.0) == outer;
+        (if is_left { ring } else { ring.reversed() }, outer)
+    };
+    rings.into_iter().zip(is_outer).map(turned).collect()
+}
+
+/// Whether most corners of a polygon lie inside another.
+fn is_within(inner: &[DVec2], outer: &[DVec2]) -> bool {
+    let inside = inner.iter().filter(|at| {
+        let mut odd = false;
+        for (a, b) in outer.iter().zip(outer.iter().cycle().skip(1)) {
+            if (a.y > at.y) != (b.y > at.y) && at.x < a.x + (at.y - a.y) / (b.y - a.y) * (b.x - a.x) {
+                odd = !odd;
+            }
+        }
+        odd
+    });
+    2 * inside.count() > inner.len()
+}
+
+/// P-curves with common ends. Where one keeps a parameter constant, their common end does too.
+fn closed(window: &Window, flats: Vec<Flat>, widest: f64) -> Result<Vec<Flat>, FaceError> {
+    let count = flats.len();
+    let mut joints = Vec::with_capacity(count);
+    for i in 0..count {
+        let (a, b) = (&flats[i], &flats[(i + 1) % count]);
+        let (end, start) = (a.end(), b.start());
+        let at = |place: DVec2| window.surface.point(place.x, place.y);
+        let gap = at(end).distance(at(start));
+        if gap > widest {
+            return Err(FaceError::Open {
+                from: a.edge.unwrap_or_default() as u64,
+                to: b.edge.unwrap_or_default() as u64,
+                gap,
+            });
+        }
+        let mut joint = 0.5 * (end + start);
+        for k in 0..2 {
+            match (a.constant[k], b.constant[k]) {
+                (true, false) => joint[k] = end[k],
+                (false, true) => joint[k] = start[k],
+                _ => {}
+            }
+        }
+        joints.push(joint);
+    }
+    let ended = |(i, flat): (usize, Flat)| flat.with_ends(joints[(i + count - 1) % count], joints[i]);
+    let ended: Vec<Flat> = flats.into_iter().enumerate().map(ended).collect();
+    // what shrank to nothing is gone
+    Ok(ended.into_iter().filter(|flat| flat.degree > 1 || flat.start() != flat.end()).collect())
+}

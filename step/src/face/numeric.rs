@@ -1,0 +1,344 @@
+//! Carriers without a closed form: B-splines, revolutions and extrusions.
+
+use std::f64::consts::TAU;
+use std::sync::{Arc, OnceLock};
+
+use glam::{DVec2, DVec3};
+use perpend::kernel::{InvalidEdit, extrusion, revolution};
+use perpend::{
+    Circle, Definition, Direction, Ellipse, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface, Prepared,
+    Query, Scratch,
+};
+
+use super::FaceError;
+use super::carrier::Pole;
+use crate::source::SourceCurve;
+
+/// Steps of Newton's method from a near point, before the certified projection is asked.
+const STEPS: usize = 12;
+
+/// A NURBS surface with the nearest points on it.
+#[derive(Debug)]
+pub(super) struct Numeric {
+    pub(super) surface: NurbsSurface,
+    /// Whether its first and last line in u, and in v, are one curve.
+    pub(super) closed: [bool; 2],
+    /// Whether the face's box may cut it down: revolutions and extrusions, which have no extent of their own.
+    pub(super) cropped: bool,
+    tolerance: f64,
+    prepared: OnceLock<Prepared>,
+}
+
+const DIRECTIONS: [Direction; 2] = [Direction::U, Direction::V];
+
+impl Numeric {
+    pub(super) fn new(surface: NurbsSurface, tolerance: f64) -> Self {
+        let closed = [0, 1].map(|k| is_closed(&surface, k, tolerance));
+        Self { surface, closed, cropped: false, tolerance, prepared: OnceLock::new() }
+    }
+
+    /// The profile (u) turned a whole turn (v).
+    pub(super) fn revolution(
+        profile: &SourceCurve,
+        centre: DVec3,
+        axis: DVec3,
+        points: &[DVec3],
+        tolerance: f64,
+    ) -> Result<Self, FaceError> {
+        let unit = axis.normalize_or_zero();
+        // a point of the profile has the distance from the axis and the height of a point of the surface
+        let polar = |p: DVec3| {
+            let height = (p - centre).dot(unit);
+            ((p - centre - height * unit).length(), height)
+        };
+        let extent = |origin: DVec3, along: DVec3| {
+            // the parameters on a line whose points have the heights, or the distances, of the face's points
+            let (slope, (_, start)) = (along.dot(unit), polar(origin));
+            let mut range = (f64::INFINITY, f64::NEG_INFINITY);
+            for p in points {
+                let (distance, height) = polar(*p);
+                let candidates = if slope.abs() > 1e-3 {
+                    let t = (height - start) / slope;
+                    [t, t]
+                } else {
+                    let across = along - slope * unit;
+                    let foot = origin - centre - start * unit;
+                    let (a, b, c) =
+                        (across.length_squared(), foot.dot(across), foot.length_squared() - distance * distance);
+                    let root = (b * b - a * c).max(0.0).sqrt();
+                    // the half of the line that is seen from the origin of its parameter
+                    let both = [(-b - root) / a, (-b + root) / a];
+                    if b > 0.0 { [both[1]; 2] } else { [both[1], both[1]] }
+                };
+                for t in candidates {
+                    range = (range.0.min(t), range.1.max(t));
+                }
+            }
+            range
+        };
+        let profile = profile_curve(profile, extent)?;
+        let surface = revolution(&profile, centre, axis, TAU)?;
+        Ok(Self { cropped: true, ..Self::new(surface, tolerance) })
+    }
+
+    /// The profile (u) moved along the direction (v), as far as the face's points reach.
+    pub(super) fn extrusion(
+        profile: &SourceCurve,
+        direction: DVec3,
+        points: &[DVec3],
+        size: f64,
+        tolerance: f64,
+    ) -> Result<Self, FaceError> {
+        let unit = direction.normalize_or_zero();
+        let profile = profile_curve(profile, |origin, along| {
+            // lines beside the direction: what remains of both across it is parallel
+            let across = along - along.dot(unit) * unit;
+            let parameters = points.iter().map(|p| (*p - origin).dot(across) / across.length_squared());
+            parameters.fold((f64::INFINITY, f64::NEG_INFINITY), |(a, b), t| (a.min(t), b.max(t)))
+        })?;
+        let none = (f64::INFINITY, f64::NEG_INFINITY);
+        let range = |points: &[DVec3]| points.iter().map(|p| p.dot(unit)).fold(none, |(a, b), t| (a.min(t), b.max(t)));
+        let (of_face, of_profile) = (range(points), range(profile.control_points()));
+        // whatever point of the profile the face's points are above
+        let (low, high) = (of_face.0 - of_profile.1 - 1e-3 * size, of_face.1 - of_profile.0 + 1e-3 * size);
+        let moved = profile.transformed(&glam::DAffine3::from_translation(low * unit))?;
+        let surface = extrusion(&moved, (high - low) * unit)?;
+        Ok(Self { cropped: true, ..Self::new(surface, tolerance) })
+    }
+
+    /// The first and the last parameter in u and in v.
+    pub(super) fn domain(&self) -> [(f64, f64); 2] {
+        DIRECTIONS.map(|direction| self.surface.domain(direction))
+    }
+
+    /// The edges of the domain that are one point.
+    pub(super) fn poles(&self) -> Vec<Pole> {
+        let (rows, columns) = (self.surface.rows(), self.surface.columns());
+        let net = self.surface.control_points();
+        let row = |i: usize| net[i * columns..(i + 1) * columns].to_vec();
+        let column = |j: usize| (0..rows).map(|i| net[i * columns + j]).collect::<Vec<_>>();
+        let [(u0, u1), (v0, v1)] = self.domain();
+        let edges = [(0, u0, row(0)), (0, u1, row(rows - 1)), (1, v0, column(0)), (1, v1, column(columns - 1))];
+        let collapsed = |points: &[DVec3]| points.iter().all(|p| p.distance(points[0]) <= self.tolerance);
+        edges
+            .into_iter()
+            .filter(|(_, _, points)| collapsed(points))
+            .map(|(across, value, points)| Pole { across, value, point: points[0] })
+            .collect()
+    }
+
+    /// The longest derivatives among some.
+    pub(super) fn scale(&self) -> DVec2 {
+        let [(u0, u1), (v0, v1)] = self.domain();
+        let mut scale = DVec2::splat(f64::MIN_POSITIVE);
+        for i in 0..=8 {
+            for j in 0..=8 {
+                let (s, t) = (f64::from(i) / 8.0, f64::from(j) / 8.0);
+                let [_, along, across, _] = self.partials(DVec2::new(u0 + s * (u1 - u0), v0 + t * (v1 - v0)));
+                scale = scale.max(DVec2::new(across.length(), along.length()));
+            }
+        }
+        scale
+    }
+
+    /// Point and first derivatives: `[S, S_v, S_u, ·]`.
+    fn partials(&self, at: DVec2) -> [DVec3; 4] {
+        let mut out = [DVec3::ZERO; 4];
+        self.surface.derivatives(at.x, at.y, 1, &mut out);
+        out
+    }
+
+    /// The point at parameters, periods taken off.
+    pub(super) fn point(&self, at: DVec2) -> DVec3 {
+        let at = self.inside(at);
+        self.surface.point(at.x, at.y)
+    }
+
+    /// Parameters in the domain: periods taken off, the nearer end beyond it.
+    fn inside(&self, at: DVec2) -> DVec2 {
+        let domain = self.domain();
+        let one = |k: usize, x: f64| {
+            let (low, high) = domain[k];
+            let within = x >= low && x <= high;
+            if self.closed[k] && !within { low + (x - low).rem_euclid(high - low) } else { x.clamp(low, high) }
+        };
+        DVec2::new(one(0, at.x), one(1, at.y))
+    }
+
+    /// The parameters of the nearest point; where Newton's method leads from `near` to a point within the tolerance, those.
+    pub(super) fn inverse(&self, p: DVec3, near: Option<DVec2>) -> DVec2 {
+        let followed = near.map(|near| self.newton(p, self.inside(near)));
+        if let Some((at, distance)) = followed
+            && distance <= self.tolerance
+        {
+            return at;
+        }
+        let certified = self.certified(p);
+        match (followed, certified) {
+            (Some((at, distance)), Some(foot)) if distance <= 1.01 * self.point(foot).distance(p) => at,
+            (_, Some(foot)) => self.newton(p, foot).0,
+            (Some((at, _)), None) => at,
+            (None, None) => self.inside(DVec2::ZERO),
+        }
+    }
+
+    fn certified(&self, p: DVec3) -> Option<DVec2> {
+        let prepared = self.prepared.get_or_init(|| {
+            let definition = Arc::new(Definition::from(self.surface.clone()));
+            Prepared::new(definition, None)
+        });
+        let query = Query::new(p, Default::default()).ok()?;
+        let foot = prepared.project(&query, &mut Scratch::default())?;
+        Some(DVec2::new(foot.parameter.u(), foot.parameter.v()?))
+    }
+
+    /// Where Gauss's steps lead from a start, and the distance there.
+    fn newton(&self, p: DVec3, start: DVec2) -> (DVec2, f64) {
+        let domain = self.domain();
+        let extent = DVec2::new(domain[0].1 - domain[0].0, domain[1].1 - domain[1].0);
+        let mut best = (start, self.point(start).distance(p));
+        let mut last = f64::INFINITY;
+        for _ in 0..STEPS {
+            let [s, sv, su, _] = self.partials(best.0);
+            let r = p - s;
+            let (a, b, c) = (su.length_squared(), su.dot(sv), sv.length_squared());
+            let (f, g) = (su.dot(r), sv.dot(r));
+            let determinant = a * c - b * b;
+            let step = if determinant > 1e-14 * a * c {
+                DVec2::new(c * f - b * g, a * g - b * f) / determinant
+            } else if a * extent.x * extent.x >= c * extent.y * extent.y {
+                // along the longer derivative alone, where the two are parallel or one vanishes
+                DVec2::new(f / a, 0.0)
+            } else {
+                DVec2::new(0.0, g / c)
+            };
+            if !step.is_finite() {
+                break;
+            }
+            let next = self.inside(best.0 + step);
+            let distance = self.point(next).distance(p);
+            // near the foot the distance no longer tells, and the step does
+            let size = (step / extent).abs().max_element();
+            if distance > best.1 && (size >= last || distance > best.1 * (1.0 + 1e-9) + 1e-3 * self.tolerance) {
+                break;
+            }
+            (best, last) = ((next, distance), size);
+            if size < 1e-16 {
+                break;
+            }
+        }
+        best
+    }
+}
+
+/// A profile as NURBS; of a line, the part that `extent` gives for its origin and unit direction.
+fn profile_curve(profile: &SourceCurve, extent: impl Fn(DVec3, DVec3) -> (f64, f64)) -> Result<NurbsCurve, FaceError> {
+    Ok(match profile {
+        SourceCurve::Line { point, direction } => {
+            let unit = direction.normalize_or_zero();
+            let (a, b) = extent(*point, unit);
+            Line::new(*point + a * unit, *point + b * unit)?.to_nurbs()?
+        }
+        SourceCurve::Circle { frame, radius } => Circle::whole(*frame, *radius)?.to_nurbs()?,
+        SourceCurve::Ellipse { frame, radii } => Ellipse::whole(*frame, *radii)?.to_nurbs()?,
+        SourceCurve::Nurbs(curve) => curve.clone(),
+        SourceCurve::Hyperbola { .. } | SourceCurve::Parabola { .. } => return Err(FaceError::UnboundedProfile),
+    })
+}
+
+/// Whether the first and the last line of control points are one, up to the tolerance, and others are not.
+fn is_closed(surface: &NurbsSurface, k: usize, tolerance: f64) -> bool {
+    let (rows, columns) = (surface.rows(), surface.columns());
+    let net = surface.control_points();
+    let (along, lines) = if k == 0 { (rows, columns) } else { (columns, rows) };
+    let index = |i: usize, line: usize| if k == 0 { i * columns + line } else { line * columns + i };
+    // weights of the last line are a multiple of those of the first
+    let share = |i: usize, line: usize| surface.weights().map_or(1.0, |w| w[index(i, line)] / w[index(i, 0)]);
+    let last = along - 1;
+    let meets = |line: usize| {
+        net[index(0, line)].distance(net[index(last, line)]) <= tolerance
+            && (share(0, line) - share(last, line)).abs() <= 1e-9 * share(0, line)
+    };
+    let opens = |line: usize| (1..last).any(|i| net[index(i, line)].distance(net[index(0, line)]) > tolerance);
+    (0..lines).all(meets) && (0..lines).any(opens)
+}
+
+/// The closed surface cut open at `at`, a parameter strictly inside the domain: it then begins there, and goes on over its seam.
+pub(super) fn cut_open(surface: &NurbsSurface, direction: Direction, at: f64) -> Result<NurbsSurface, InvalidEdit> {
+    let (head, tail) = surface.split(direction, at)?;
+    let (first, last) = surface.domain(direction);
+    let head = head.with_domain(direction, last, last + (at - first))?;
+    Ok(joined(&tail, &head, direction)?)
+}
+
+/// One surface of two that meet along a line.
+fn joined(
+    first: &NurbsSurface,
+    second: &NurbsSurface,
+    direction: Direction,
+) -> Result<NurbsSurface, InvalidDefinition> {
+    let knots = |surface: &NurbsSurface, direction| surface.knots(direction).as_slice().to_vec();
+    let degree = first.knots(direction).degree();
+    let mut along = knots(first, direction);
+    along.pop();
+    along.extend(&second.knots(direction).as_slice()[degree + 1..]);
+    let (rows, columns) = (first.rows(), first.columns());
+    let net = |surface: &NurbsSurface| -> Vec<Vec<DVec3>> {
+        surface.control_points().chunks(surface.columns()).map(<[DVec3]>::to_vec).collect()
+    };
+    let weights = |surface: &NurbsSurface| -> Option<Vec<Vec<f64>>> {
+        surface.weights().map(|w| w.chunks(surface.columns()).map(<[f64]>::to_vec).collect())
+    };
+    let (mut points, mut all) = (net(first), weights(first));
+    let (more, mut more_weights) = (net(second), weights(second));
+    if let (Some(a), Some(b)) = (&all, &mut more_weights) {
+        let share = match direction {
+            Direction::U => a[rows - 1][0] / b[0][0],
+            Direction::V => a[0][columns - 1] / b[0][0],
+        };
+        b.iter_mut().flatten().for_each(|w| *w *= share);
+    }
+    match direction {
+        Direction::U => {
+            points.extend(more.into_iter().skip(1));
+            if let (Some(a), Some(b)) = (&mut all, more_weights) {
+                a.extend(b.into_iter().skip(1));
+            }
+        }
+        Direction::V => {
+            points.iter_mut().zip(more).for_each(|(row, more)| row.extend(&more[1..]));
+            if let (Some(a), Some(b)) = (&mut all, more_weights) {
+                a.iter_mut().zip(b).for_each(|(row, more)| row.extend(&more[1..]));
+            }
+        }
+    }
+    let (u, v) = match direction {
+        Direction::U => (along, knots(first, Direction::V)),
+        Direction::V => (knots(first, Direction::U), along),
+    };
+    NurbsSurface::new(first.degree(), (u, v), points, all)
+}
+
+/// The part of a surface between two parameters, as far as they lie in the domain.
+pub(super) fn part(
+    surface: &NurbsSurface,
+    direction: Direction,
+    range: (f64, f64),
+) -> Result<NurbsSurface, InvalidEdit> {
+    let (first, last) = surface.domain(direction);
+    let hair = 1e-9 * (last - first);
+    let mut part = surface.clone();
+    if range.1 < last - hair {
+        part = part.split(direction, range.1)?.0;
+    }
+    if range.0 > first + hair {
+        part = part.split(direction, range.0)?.1;
+    }
+    Ok(part)
+}
+
+/// Where a direction's derivatives may jump: its inner knots.
+pub(super) fn inner_knots(knots: &KnotVector) -> Vec<f64> {
+    let enough = knots.degree().saturating_sub(1).max(1);
+    knots.breaks().filter(|knot| knot.multiplicity >= enough).map(|knot| knot.at).collect()
+}

@@ -1,0 +1,4 @@
+//! Tests of faces.
+
+mod area;
+mod corpus;

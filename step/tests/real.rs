@@ -1,0 +1,242 @@
+//! Parts that nobody here wrote: no face is lost, and what is read lies where another kernel puts it.
+//!
+//! The parts lie outside the repository: in `real` of the folder that the environment variable `PERPEND_SHARED` names, by default
+//! `../shared` beside the workspace. Without them the test says so and passes.
+
+#![allow(clippy::print_stderr, reason = "a test that skips says so aloud; the times are wanted by readers")]
+
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+use perpend::{DVec3, Model, NurbsSurface, QueryOptions};
+use perpend_step::{ReadOptions, SourceCurve, SourceLoop, SourcePart, SourceSurface, read_file};
+
+/// A part: its folder, its file, and how many faces, edges and bodies the file has.
+struct Part {
+    folder: &'static str,
+    file: &'static str,
+    faces: usize,
+    edges: usize,
+    bodies: usize,
+    closed_shells: usize,
+    /// Entities that hold geometry without faces.
+    left_out: &'static [&'static str],
+}
+
+/// Edges are counted in the files: other kernels split some of them.
+const MODELS: [Part; 6] = [
+    Part {
+        folder: "aero-assembly",
+        file: "original.step",
+        faces: 507,
+        edges: 1423,
+        bodies: 8,
+        closed_shells: 8,
+        left_out: &[],
+    },
+    Part {
+        folder: "as1-assembly",
+        file: "original.stp",
+        faces: 160,
+        edges: 354,
+        bodies: 18,
+        closed_shells: 18,
+        left_out: &[],
+    },
+    Part {
+        folder: "iea15mw-blade",
+        file: "original.stp",
+        faces: 3,
+        edges: 12,
+        bodies: 3,
+        closed_shells: 0,
+        left_out: &["GEOMETRIC_CURVE_SET"],
+    },
+    Part {
+        folder: "nist-ftc-06",
+        file: "original.step",
+        faces: 187,
+        edges: 476,
+        bodies: 1,
+        closed_shells: 1,
+        left_out: &[],
+    },
+    Part {
+        folder: "odri-lower-leg",
+        file: "original.step",
+        faces: 329,
+        edges: 814,
+        bodies: 1,
+        closed_shells: 1,
+        left_out: &[],
+    },
+    Part {
+        folder: "tigl-nacelle",
+        file: "original.stp",
+        faces: 6,
+        edges: 14,
+        bodies: 1,
+        closed_shells: 0,
+        left_out: &[],
+    },
+];
+
+fn shared() -> Option<PathBuf> {
+    let folder = std::env::var_os("PERPEND_SHARED")
+        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from)
+        .join("real");
+    if folder.is_dir() {
+        return Some(folder);
+    }
+    eprintln!("skipped: {} is absent; PERPEND_SHARED names the folder that holds real/", folder.display());
+    None
+}
+
+#[test]
+fn no_face_is_lost() {
+    let Some(shared) = shared() else { return };
+    for model in MODELS {
+        let folder = shared.join(model.folder);
+        let start = Instant::now();
+        let part = read_file(&folder.join(model.file), &ReadOptions::default()).expect("a STEP file");
+        eprintln!("{}: {:?}, {}, tolerance {}", model.folder, start.elapsed(), part.units.symbol(), part.tolerance);
+        for left_out in &part.not_understood {
+            eprintln!("  {left_out}");
+        }
+        let listed: Vec<&str> = part.not_understood.iter().map(|left_out| left_out.keyword.as_str()).collect();
+        assert_eq!(listed, model.left_out, "{}", model.folder);
+        assert_eq!(part.faces.len(), model.faces, "faces of {}", model.folder);
+        assert_eq!(part.edges.len(), model.edges, "edges of {}", model.folder);
+        assert_eq!(part.bodies.len(), model.bodies, "bodies of {}", model.folder);
+        let shells = || part.bodies.iter().flat_map(|body| &body.shells);
+        assert_eq!(shells().filter(|shell| shell.closed).count(), model.closed_shells, "{}", model.folder);
+        let mut in_shells: Vec<usize> = shells().flat_map(|shell| shell.faces.iter().copied()).collect();
+        in_shells.sort_unstable();
+        assert!(in_shells.into_iter().eq(0..model.faces), "every face of {} is in one shell", model.folder);
+        check_loops(&part, model.folder);
+        check_edges(&part, model.folder);
+        check_against_corpus(&part, &folder);
+    }
+}
+
+/// The edges of a loop follow one another, and closed shells use every edge twice, once in either direction.
+fn check_loops(part: &SourcePart, name: &str) {
+    let mut uses = vec![(0, 0); part.edges.len()];
+    for face in &part.faces {
+        for around in &face.loops {
+            let SourceLoop::Edges { uses: around, .. } = around else { continue };
+            let ends = |i: usize| {
+                let used = &around[i % around.len()];
+                let edge = &part.edges[used.edge];
+                if used.forward { (edge.start, edge.end) } else { (edge.end, edge.start) }
+            };
+            for (i, used) in around.iter().enumerate() {
+                let gap = ends(i).1.distance(ends(i + 1).0);
+                assert!(gap <= part.tolerance, "{name}: a gap of {gap} after edge #{}", part.edges[used.edge].entity);
+                let both = &mut uses[used.edge];
+                *if used.forward { &mut both.0 } else { &mut both.1 } += 1;
+            }
+        }
+    }
+    if part.bodies.iter().flat_map(|body| &body.shells).all(|shell| shell.closed) {
+        assert!(uses.iter().all(|both| *both == (1, 1)), "{name}: an edge is not used once in either direction");
+    }
+}
+
+/// The vertices of an edge lie on its curve.
+fn check_edges(part: &SourcePart, name: &str) {
+    for edge in &part.edges {
+        let slack = part.tolerance.max(2e-3);
+        for point in [edge.start, edge.end] {
+            let off = match &edge.curve {
+                SourceCurve::Line { point: origin, direction } => {
+                    let along = direction.normalize();
+                    let arm = point - *origin;
+                    (arm - arm.dot(along) * along).length()
+                }
+                SourceCurve::Circle { frame, radius } => {
+                    let arm = point - frame.centre;
+                    let height = arm.dot(frame.axis);
+                    ((arm - height * frame.axis).length() - radius).hypot(height)
+                }
+                SourceCurve::Nurbs(curve) => {
+                    let (from, to) = curve.domain();
+                    curve.point(from).distance(point).min(curve.point(to).distance(point))
+                }
+                other => panic!("{name}: {other:?}"),
+            };
+            assert!(off <= slack, "{name}: a vertex of edge #{} lies {off} beside its curve", edge.entity);
+        }
+    }
+}
+
+/// Surfaces beside those that another kernel made of the same file, face by face: both list the faces in the order of the file's shells.
+fn check_against_corpus(part: &SourcePart, folder: &Path) {
+    let text = std::fs::read_to_string(folder.join("corpus.json")).expect("a corpus");
+    let corpus: serde_json::Value = serde_json::from_str(&text).expect("JSON");
+    let of_surfaces =
+        corpus["entities"].as_array().expect("entities").iter().filter(|entity| entity["kind"] == "surface");
+    let name = folder.display();
+    let size = part.edges.iter().map(|edge| edge.start.abs().max_element()).fold(1.0, f64::max);
+    let mut left: Vec<&serde_json::Value> = of_surfaces.collect();
+    assert_eq!(left.len(), part.faces.len(), "{name}");
+    for face in &part.faces {
+        let at = left.iter().position(|entity| is_same(&face.surface, entity, size));
+        let at = at.unwrap_or_else(|| panic!("{name}: no surface of the corpus is that of face #{}", face.entity));
+        left.swap_remove(at);
+    }
+}
+
+fn numbers(value: &serde_json::Value) -> Vec<f64> {
+    match value {
+        serde_json::Value::Array(values) => values.iter().flat_map(numbers).collect(),
+        value => value.as_f64().into_iter().collect(),
+    }
+}
+
+/// Whether the surface is the one of the corpus, by what is known of that one.
+fn is_same(surface: &SourceSurface, entity: &serde_json::Value, size: f64) -> bool {
+    let points: Vec<DVec3> = numbers(&entity["points"]).chunks_exact(3).map(DVec3::from_slice).collect();
+    let kind = entity["origin_type"].as_str().unwrap_or_default();
+    let near = |off: f64| off.abs() <= 1e-9 * size;
+    match (surface, kind) {
+        (SourceSurface::Plane(frame), "plane") => points.iter().all(|p| near((*p - frame.centre).dot(frame.axis))),
+        (SourceSurface::Cylinder { frame, radius }, "cylinder") => corners(entity, &points).iter().all(|p| {
+            let arm = *p - frame.centre;
+            near((arm - arm.dot(frame.axis) * frame.axis).length() - radius)
+        }),
+        (SourceSurface::Cone { frame, radius, half_angle }, "cone") => corners(entity, &points).iter().all(|p| {
+            let arm = *p - frame.centre;
+            let height = arm.dot(frame.axis);
+            near((arm - height * frame.axis).length() - (radius + height * half_angle.tan()).abs())
+        }),
+        (SourceSurface::Sphere { frame, radius }, "sphere") => {
+            corners(entity, &points).iter().all(|p| near(p.distance(frame.centre) - radius))
+        }
+        (SourceSurface::Torus { frame, major, minor }, "torus") => corners(entity, &points).iter().all(|p| {
+            let arm = *p - frame.centre;
+            let height = arm.dot(frame.axis);
+            near(((arm - height * frame.axis).length() - major).hypot(height) - minor)
+        }),
+        (SourceSurface::Nurbs(surface), "bspline") => {
+            // periodic ones are cut open elsewhere: the corners of what is left are points of the surface all the same
+            let own = surface.control_points();
+            own.len() == points.len() && own.iter().zip(&points).all(|(p, q)| near(p.distance(*q)))
+                || corners(entity, &points).iter().all(|p| near(distance(surface, *p)))
+        }
+        _ => false,
+    }
+}
+
+/// The corners of a net, which are points of the surface.
+fn corners(entity: &serde_json::Value, points: &[DVec3]) -> Vec<DVec3> {
+    let columns = entity["points"][0].as_array().map_or(points.len(), Vec::len);
+    let rows = points.len() / columns;
+    [0, columns - 1, (rows - 1) * columns, rows * columns - 1].iter().map(|i| points[*i]).collect()
+}
+
+fn distance(surface: &NurbsSurface, p: DVec3) -> f64 {
+    let mut model = Model::new();
+    let id = model.insert("surface", surface.clone()).expect("a valid surface");
+    model.project(id, p, &QueryOptions::default()).expect("a finite point").distance
+}
