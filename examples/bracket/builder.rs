@@ -2,8 +2,8 @@
 
 use perpend::glam::DVec2;
 use perpend::{
-    Carrier, Circle, DVec3, Definition, EntityId, Frame, Line, Model, NurbsCurve, NurbsSurface, Plane, Shell, TrimCurveData,
-    TrimLoopData, TrimmedSurface, TrimmingData,
+    Carrier, Circle, DVec3, EntityId, Frame, Line, Model, NurbsCurve, NurbsSurface, Plane, Shell,
+    TrimCurveData, TrimLoopData, TrimmedSurface, TrimmingData,
 };
 
 use super::Outcome;
@@ -75,7 +75,13 @@ impl Builder {
     }
 
     /// A whole surface as a face. The edges lie at the first v, the last u, the last v and the first u.
-    pub(super) fn whole(&mut self, name: &str, surface: NurbsSurface, reversed: bool, edges: [&Edge; 4]) -> Outcome<()> {
+    pub(super) fn whole(
+        &mut self,
+        name: &str,
+        surface: NurbsSurface,
+        reversed: bool,
+        edges: [&Edge; 4],
+    ) -> Outcome<()> {
         let corners = [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(u, v)| DVec2::new(u, v));
         let side = |k: usize| TrimCurveData {
             degree: 1,

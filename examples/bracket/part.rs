@@ -5,7 +5,7 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use perpend::{Cylinder, DVec3, Frame, KnotVector, Model, NurbsSurface, Torus};
+use perpend::{Cylinder, DVec3, Frame, Model, NurbsSurface, Torus};
 
 use super::Outcome;
 use super::builder::{Along, Builder, Edge, boundary};
@@ -87,7 +87,8 @@ fn plate(builder: &mut Builder) -> Outcome<Outline> {
     for k in 0..4 {
         let [from, to] = straight[k];
         let side = wall(at(from, 0.0), at(to, 0.0));
-        let around = [(&bottom[2 * k], true), (&upright[2 * k + 1], true), (&top[2 * k], false), (&upright[2 * k], false)];
+        let around =
+            [(&bottom[2 * k], true), (&upright[2 * k + 1], true), (&top[2 * k], false), (&upright[2 * k], false)];
         builder.flat(&format!("plate side {}", k + 1), side, &[around.to_vec()])?;
         let frame = Frame { centre: at(centres[k], 0.0), ..Frame::WORLD };
         let corner = Cylinder::new(frame, CORNER, (0.0, HEIGHT), sweep(k))?.to_nurbs()?;
@@ -190,18 +191,15 @@ fn seat() -> Outcome<NurbsSurface> {
     let mut knots = vec![0.0; 4];
     knots.extend((1..COUNT - 3).map(|k| k as f64 / (COUNT - 3) as f64));
     knots.extend([1.0; 4]);
-    let knots = KnotVector::new(3, knots)?;
     // where the control points of a straight line lie
-    let share = |k: usize| knots.as_slice()[k + 1..k + 4].iter().sum::<f64>() / 3.0;
+    let share = |k: usize| knots[k + 1..k + 4].iter().sum::<f64>() / 3.0;
     let [x, y] = BLOCK.map(|(from, to)| move |share: f64| from + share * (to - from));
-    let mut points = Vec::new();
-    for i in 0..COUNT {
-        for j in 0..COUNT {
-            let (u, v) = (share(i), share(j));
-            let height = 30.0 + 20.0 * (u - 0.5).powi(2) + 3.5 * (TAU * v + 0.8).cos() - 6.0 * (u - 0.5) * (v - 0.5);
-            // short in the file, and the same where cosines differ in the last bit
-            points.push(DVec3::new(x(u), y(v), (height * 1e4).round() / 1e4));
-        }
-    }
-    Ok(NurbsSurface::new((3, 3), (knots.as_slice().to_vec(), knots.as_slice().to_vec()), points, COUNT, None)?)
+    let point = |i: usize, j: usize| {
+        let (u, v) = (share(i), share(j));
+        let height = 30.0 + 20.0 * (u - 0.5).powi(2) + 3.5 * (TAU * v + 0.8).cos() - 6.0 * (u - 0.5) * (v - 0.5);
+        // short in the file, and the same where cosines differ in the last bit
+        DVec3::new(x(u), y(v), (height * 1e4).round() / 1e4)
+    };
+    let points = (0..COUNT).map(|i| (0..COUNT).map(|j| point(i, j)).collect()).collect();
+    Ok(NurbsSurface::new((3, 3), (knots.clone(), knots.clone()), points, None)?)
 }

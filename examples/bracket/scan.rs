@@ -47,7 +47,8 @@ fn of_face(entity: &Entity, random: &mut Random, text: &mut String) {
         }
         let on = surface.point(at.x, at.y);
         let made = rounded(off(entity.name(), on) + NOISE * normal(random));
-        let p = (on + made * sign * surface.normal(at.x, at.y)).to_array().map(rounded);
+        let outward = sign * surface.normal(at.x, at.y).normalize();
+        let p = (on + made * outward).to_array().map(rounded);
         writeln!(text, "{},{},{},{made}", p[0], p[1], p[2]).expect("a string takes all that is written to it");
     }
 }
