@@ -20,7 +20,11 @@ impl Dependence {
         let made_from: Vec<Vec<usize>> = entities
             .iter()
             .map(|entity| {
-                let from = entity.record.as_ref().map_or_else(Vec::new, Record::made_from);
+                // a face that trims another entity follows that alone, whatever its record says of its making
+                let from = match entity.carrier() {
+                    Some(carrier) => vec![carrier],
+                    None => entity.record.as_ref().map_or_else(Vec::new, Record::made_from),
+                };
                 from.iter().filter_map(|id| index.get(id).copied()).collect()
             })
             .collect();

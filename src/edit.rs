@@ -9,6 +9,7 @@ use crate::enter::IntoDefinition;
 use crate::entity::Entity;
 use crate::model::Model;
 use crate::rebuild::{RebuildError, Staged};
+use crate::trimmed::InvalidTrimmedSurface;
 
 /// Why an edit was refused. The model is as it was.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -60,6 +61,46 @@ pub enum EditError {
         by: EntityId,
         /// The field that holds the reference.
         field: String,
+    },
+    /// The entity that is to be removed is a part of a trimmed face or a body.
+    #[error("entity {id} is in use: {field} of entity {by} names it; remove or replace entity {by} first")]
+    PartOf {
+        /// The entity that was to be removed.
+        id: EntityId,
+        /// The face or body that it is a part of.
+        by: EntityId,
+        /// The field that names it.
+        field: String,
+    },
+    /// The new trimmed face breaks a rule.
+    #[error("entity {id}: definition: {source}")]
+    Trimmed {
+        /// The entity to be edited.
+        id: EntityId,
+        /// The rule.
+        source: Box<InvalidTrimmedSurface>,
+    },
+    /// The face trims another entity, and follows that.
+    #[error("entity {id} trims entity {carrier} and follows it: prepare entity {carrier}")]
+    FollowsCarrier {
+        /// The face.
+        id: EntityId,
+        /// The entity that it trims.
+        carrier: EntityId,
+    },
+    /// The model has no body of this id.
+    #[error("the model has no body {id}")]
+    UnknownBody {
+        /// The id.
+        id: EntityId,
+    },
+    /// A colour has a part that is no share of light.
+    #[error("entity {id}: colour is ({:?}, {:?}, {:?}); red, green and blue are from 0 to 1", colour[0], colour[1], colour[2])]
+    Colour {
+        /// The entity or body.
+        id: EntityId,
+        /// What was given.
+        colour: [f64; 3],
     },
     /// The tolerance of a consent is no length above 0.
     #[error("entity {id}: {source}")]
@@ -118,14 +159,25 @@ impl Model {
     /// After 2⁶⁴ - 1 ids.
     pub fn insert(&mut self, name: &str, definition: impl IntoDefinition) -> Result<EntityId, InvalidDefinition> {
         let entered = definition.enter()?;
-        let id = EntityId::new(self.next_id);
-        self.next_id = self.next_id.checked_add(1).expect("a model has ids for 2^64 - 1 entities");
+        let id = self.give_id();
         let mut record = None;
         entered.note(&mut record);
-        self.index.insert(id, self.entities.len());
-        self.entities.push(Entity::new(id, name.to_owned(), entered.definition, record));
-        self.overview = OnceLock::new();
+        self.push(Entity::new(id, name.to_owned(), entered.definition, record));
         Ok(id)
+    }
+
+    /// A new id.
+    pub(crate) fn give_id(&mut self) -> EntityId {
+        let id = EntityId::new(self.next_id);
+        self.next_id = self.next_id.checked_add(1).expect("a model has ids for 2^64 - 1 entities");
+        id
+    }
+
+    /// Adds an entity as the last one.
+    pub(crate) fn push(&mut self, entity: Entity) {
+        self.index.insert(entity.id, self.entities.len());
+        self.entities.push(entity);
+        self.overview = OnceLock::new();
     }
 
     /// Gives an entity a new definition and raises its revision; then all that is made of it is made anew, in order of
@@ -136,7 +188,8 @@ impl Model {
     /// keeps the definition that it was given here when its inputs change, until it is [rebuilt](Self::rebuild),
     /// [remade](Self::remake) or replaced by an analytic shape, whose own operation then is what makes it.
     ///
-    /// The original of an entity that was purged goes with the definition that was made of it.
+    /// The original of an entity that was purged goes with the definition that was made of it. A trimmed face is no longer trimmed
+    /// then; [`replace_trimmed`](Self::replace_trimmed) gives it another trim. Faces that trim the entity follow it.
     ///
     /// # Errors
     ///
@@ -151,11 +204,11 @@ impl Model {
         entered.note(&mut record);
         let is_same = entered.definition == *self.entities[at].definition;
         let mut staged = Staged::new(self);
-        staged.set(id, Arc::new(entered.definition), record);
+        staged.set_with(id, Arc::new(entered.definition), record, None);
         if !is_same {
             staged.spread(id).map_err(|error| EditError::Rebuild(Box::new(error)))?;
         }
-        let changes = staged.changes();
+        let changes = staged.changes(id).map_err(|error| EditError::Rebuild(Box::new(error)))?;
         self.take_over(changes);
         Ok(())
     }
@@ -200,7 +253,7 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// An unknown id; another entity's record that refers to it.
+    /// An unknown id; another entity's record that refers to it; a face or a body that it is a part of.
     pub fn remove(&mut self, id: EntityId) -> Result<Entity, EditError> {
         let at = self.position(id)?;
         for other in self.entities.iter().filter(|other| other.id != id) {
@@ -208,6 +261,9 @@ impl Model {
             if let Some((field, _)) = references.into_iter().find(|(_, target)| *target == id) {
                 return Err(EditError::InUse { id, by: other.id, field });
             }
+        }
+        if let Some(one) = self.uses(id).next() {
+            return Err(EditError::PartOf { id, by: one.by, field: one.field() });
         }
         let entity = self.entities.remove(at);
         self.index.remove(&id);

@@ -23,6 +23,7 @@
 //! `f64`.
 
 mod batch;
+mod body;
 mod decompose;
 mod dependence;
 mod doubts;
@@ -41,13 +42,17 @@ mod prepare;
 mod projector;
 mod query;
 mod rebuild;
+mod referent;
 mod replay;
 mod shapes;
 mod standing;
+mod trimmed;
 mod trust;
 mod units;
+mod uses;
 mod written;
 
+pub use body::{Body, InvalidBody, Shell};
 pub use doubts::Doubt;
 pub use edit::EditError;
 pub use enter::{Entered, IntoDefinition};
@@ -60,15 +65,18 @@ pub use original::Original;
 pub use prepare::{Consent, Preparation};
 pub use projector::Projector;
 pub use rebuild::RebuildError;
+pub use referent::Referent;
 pub use replay::{Replay, ReplayError};
+pub use trimmed::{Carrier, InvalidTrimmedSurface, TrimmedSurface};
 pub use trust::Trust;
 pub use units::Units;
 
 pub use glam::{self, DVec3};
 pub use perpend_kernel::{
     self as kernel, Aabb, Along, Circle, Cone, CurveData, Cylinder, Definition, DefinitionData, Direction, Ellipse,
-    EntityId, Fingerprint, Frame, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface, Plane, PointIndex,
-    Sphere, SurfaceData, Torus,
+    EntityId, Fingerprint, Frame, InvalidDefinition, InvalidTrim, KnotVector, Line, NurbsCurve, NurbsSurface, Plane,
+    PlaneCurve, PointIndex, Region, Side, Sphere, SurfaceData, Torus, TrimCurve, TrimCurveData, TrimLoop, TrimLoopData,
+    Trimming, TrimmingData,
 };
 pub use perpend_knowledge::{
     self as knowledge, AcquireOptions, Basis, Categories, Category, Classification, Cleaning, Contradiction,

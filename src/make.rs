@@ -1,7 +1,5 @@
 //! Entities made by operations.
 
-use std::sync::OnceLock;
-
 use perpend_kernel::EntityId;
 use perpend_knowledge::{BuildError, Intent, Making, MakingError, Operation, Record};
 
@@ -66,11 +64,8 @@ impl Model {
             other => unreachable!("there is a step: {other}"),
         })?;
         let record = Record { revision: 0, ..remade(&Record::default(), &making, &built, self) };
-        let id = EntityId::new(self.next_id);
-        self.next_id = self.next_id.checked_add(1).expect("a model has ids for 2^64 - 1 entities");
-        self.index.insert(id, self.entities.len());
-        self.entities.push(Entity::new(id, name.to_owned(), built.definition, Some(record)));
-        self.overview = OnceLock::new();
+        let id = self.give_id();
+        self.push(Entity::new(id, name.to_owned(), built.definition, Some(record)));
         Ok(id)
     }
 }

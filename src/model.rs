@@ -6,6 +6,7 @@ use std::sync::OnceLock;
 use perpend_kernel::{Definition, EntityId};
 use perpend_knowledge::Definitions;
 
+use crate::body::Body;
 use crate::entity::Entity;
 use crate::nearest::Overview;
 use crate::units::Units;
@@ -23,6 +24,10 @@ pub struct Model {
     pub(crate) entities: Vec<Entity>,
     /// Where in `entities` an id stands.
     pub(crate) index: HashMap<EntityId, usize>,
+    /// In the order of the file.
+    pub(crate) bodies: Vec<Body>,
+    /// Where in `bodies` an id stands.
+    pub(crate) body_index: HashMap<EntityId, usize>,
     /// What queries to the whole model need, built on first use.
     pub(crate) overview: OnceLock<Overview>,
 }
@@ -31,13 +36,14 @@ impl Model {
     /// An empty model in millimetres. Its first entity gets the id 1.
     #[must_use]
     pub fn new() -> Self {
-        Self::from_parts(Units::default(), 1, Vec::new())
+        Self::from_parts(Units::default(), 1, Vec::new(), Vec::new())
     }
 
-    /// A model with these entities, whose ids differ and lie below `next_id`.
-    pub(crate) fn from_parts(units: Units, next_id: u64, entities: Vec<Entity>) -> Self {
+    /// A model with these entities and bodies, whose ids differ and lie below `next_id`.
+    pub(crate) fn from_parts(units: Units, next_id: u64, entities: Vec<Entity>, bodies: Vec<Body>) -> Self {
         let index = entities.iter().enumerate().map(|(at, entity)| (entity.id, at)).collect();
-        Self { units, next_id, entities, index, overview: OnceLock::new() }
+        let body_index = bodies.iter().enumerate().map(|(at, body)| (body.id, at)).collect();
+        Self { units, next_id, entities, index, bodies, body_index, overview: OnceLock::new() }
     }
 
     /// The unit of all lengths.
@@ -51,7 +57,7 @@ impl Model {
         self.units = units;
     }
 
-    /// The id that the next entity gets.
+    /// The id that the next entity or body gets.
     #[must_use]
     pub fn next_id(&self) -> EntityId {
         EntityId::new(self.next_id)
@@ -63,7 +69,7 @@ impl Model {
         self.entities.len()
     }
 
-    /// Whether there are no entities.
+    /// Whether there are no entities, and so no bodies either.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.entities.is_empty()
@@ -102,7 +108,8 @@ impl Default for Model {
 /// Two models are equal where their files are.
 impl PartialEq for Model {
     fn eq(&self, other: &Self) -> bool {
-        (self.units, self.next_id, &self.entities) == (other.units, other.next_id, &other.entities)
+        (self.units, self.next_id, &self.entities, &self.bodies)
+            == (other.units, other.next_id, &other.entities, &other.bodies)
     }
 }
 

@@ -2,14 +2,14 @@
 
 use std::sync::Arc;
 
-use perpend_kernel::{Definition, DefinitionData};
+use perpend_kernel::Definition;
 use perpend_knowledge::{Basis, Classification, Cleaning, Item, Record, displacement};
 use serde::{Deserialize, Serialize};
 
 use crate::enter::IntoDefinition;
 use crate::entity::EntityError;
 use crate::trust::Trust;
-use crate::written::{Writing, Written};
+use crate::written::{Form, Writing, Written};
 
 /// What an entity was before it was purged: its definition, and what was known of that.
 ///
@@ -64,7 +64,8 @@ impl Original {
         definition: &Definition,
         record: &mut Option<Record>,
     ) -> Result<Self, EntityError> {
-        let entered = IntoDefinition::enter(DefinitionData::from(data.definition)).map_err(within)?;
+        let Form::Plain(plain) = Form::from(data.definition) else { return Err(within(EntityError::NoOriginal)) };
+        let entered = IntoDefinition::enter(plain).map_err(within)?;
         let mut known = data.knowledge;
         if let Some(known) = &known {
             known.validate().map_err(within)?;

@@ -52,9 +52,13 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// An unknown id; an entity that is made of this one and cannot be built.
+    /// An unknown id; a face that trims another entity, which is cleaned in its place; an entity that is made of this one and cannot
+    /// be built, or a trim that does not hold of it any more.
     pub fn clean(&mut self, id: EntityId) -> Result<Preparation, EditError> {
         let entity = &self.entities[self.position(id)?];
+        if let Some(carrier) = entity.carrier() {
+            return Err(EditError::FollowsCarrier { id, carrier });
+        }
         let PreparedDefinition { definition, steps, deviation: moved } = clean(&entity.definition);
         let unchanged = Preparation { steps: Vec::new(), deviation: 0.0 };
         if steps.is_empty() {
@@ -82,14 +86,19 @@ impl Model {
     ///
     /// The original is kept, with what was known of it, until [`drop_original`](Self::drop_original);
     /// [`restore`](Self::restore) takes it back. The deviation is proven from the original, also where an entity is purged again: what
-    /// is purged is the original always, so that deviations do not add up. Where nothing can go, the entity is as the original. What
+    /// is purged is the original always, so that deviations do not add up. The parameters stay, so that a trim bounds what it bounded,
+    /// moved by no more than that. Where nothing can go, the entity is as the original. What
     /// is made of the entity is made anew.
     ///
     /// # Errors
     ///
-    /// An unknown id; a tolerance that is no finite length above 0; an entity that is made of this one and cannot be built.
+    /// An unknown id; a tolerance that is no finite length above 0; a face that trims another entity, which is purged in its place; an
+    /// entity that is made of this one and cannot be built, or a trim that does not hold of it any more.
     pub fn purge(&mut self, id: EntityId, consent: Consent) -> Result<Preparation, EditError> {
         let entity = &self.entities[self.position(id)?];
+        if let Some(carrier) = entity.carrier() {
+            return Err(EditError::FollowsCarrier { id, carrier });
+        }
         let tolerance = consent.tolerance;
         let original =
             entity.original.clone().unwrap_or_else(|| Original::of(&entity.definition, entity.record.as_ref()));
@@ -172,7 +181,7 @@ impl Model {
         let mut staged = Staged::new(self);
         staged.set(id, definition, Some(record));
         staged.spread(id).map_err(|error| EditError::Rebuild(Box::new(error)))?;
-        let changes = staged.changes();
+        let changes = staged.changes(id).map_err(|error| EditError::Rebuild(Box::new(error)))?;
         self.take_over(changes);
         let at = self.position(id)?;
         self.entities[at].original = original;

@@ -3,15 +3,18 @@
 use std::collections::HashMap;
 use std::sync::{Arc, OnceLock};
 
-use perpend_kernel::{Definition, EntityId, Fingerprint};
+use perpend_kernel::{Definition, EntityId, Fingerprint, InvalidTrim, Trimming};
 use perpend_knowledge::{
     Basis, BuildError, Built, Checked, Definitions, Intent, Item, Making, MakingError, Operation, Origin, Record,
     Relation, default_tolerance, prove,
 };
 
 use crate::dependence::{Dependence, shown};
+use crate::entity::Part;
 use crate::model::Model;
+use crate::referent::Referent;
 use crate::standing::Standing;
+use crate::trimmed::note;
 
 /// Why an entity was not made anew. The model is as it was, bit for bit.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
@@ -75,6 +78,38 @@ pub enum RebuildError {
         /// What its operation lacks.
         source: Box<BuildError>,
     },
+    /// A face trims another entity: it is made when that is.
+    #[error("entity {id} trims entity {carrier} and follows it: edit entity {carrier}, or replace the face")]
+    FollowsCarrier {
+        /// The face.
+        id: EntityId,
+        /// The entity that it trims.
+        carrier: EntityId,
+    },
+    /// The trim of a face does not hold of its new surface.
+    #[error("entity {id}{}: definition: {source}", if id == edited { String::new() } else { format!(", which follows entity {edited}") })]
+    Trim {
+        /// The entity that was edited.
+        edited: EntityId,
+        /// The face: that one, or one that follows it.
+        id: EntityId,
+        /// The rule that the trim breaks.
+        source: InvalidTrim,
+    },
+    /// An entity would become what a face or a body that it is a part of cannot use.
+    #[error(
+        "entity {id} would become one {is}, and {field} of entity {by} names it: remove or replace entity {by} first"
+    )]
+    Part {
+        /// The entity.
+        id: EntityId,
+        /// What it would become.
+        is: Referent,
+        /// The face or body that it is a part of.
+        by: EntityId,
+        /// The field that names it.
+        field: String,
+    },
 }
 
 /// Definitions and records under way, over those of a model.
@@ -83,16 +118,26 @@ pub(crate) struct Staged<'a> {
     model: &'a Model,
     /// In the order in which they changed.
     pub(crate) order: Vec<EntityId>,
-    changed: HashMap<EntityId, (Arc<Definition>, Option<Record>)>,
+    changed: HashMap<EntityId, Change>,
 }
 
-/// Definitions and records to be taken over.
-pub(crate) type Changes = Vec<(EntityId, Arc<Definition>, Option<Record>)>;
+/// What an entity is to become.
+#[derive(Debug)]
+pub(crate) struct Change {
+    pub(crate) definition: Arc<Definition>,
+    pub(crate) record: Option<Record>,
+    pub(crate) part: Option<Part>,
+    /// Whether the trim was validated against this definition.
+    is_checked: bool,
+}
+
+/// What is to be taken over.
+pub(crate) type Changes = Vec<(EntityId, Change)>;
 
 impl Definitions for Staged<'_> {
     fn get(&self, id: EntityId) -> Option<&Definition> {
         match self.changed.get(&id) {
-            Some((definition, _)) => Some(definition),
+            Some(change) => Some(&change.definition),
             None => self.model.get(id),
         }
     }
@@ -103,13 +148,30 @@ impl<'a> Staged<'a> {
         Self { model, order: Vec::new(), changed: HashMap::new() }
     }
 
+    /// Gives an entity a definition; what trims it stays, and is validated anew in [`changes`](Self::changes).
     pub(crate) fn set(&mut self, id: EntityId, definition: Arc<Definition>, record: Option<Record>) {
-        if self.changed.insert(id, (definition, record)).is_none() {
+        let part = self.model.entity(id).and_then(|entity| entity.part.clone());
+        self.insert(id, Change { definition, record, part, is_checked: false });
+    }
+
+    /// Gives an entity a definition and what trims it, which was validated against that.
+    pub(crate) fn set_with(
+        &mut self,
+        id: EntityId,
+        definition: Arc<Definition>,
+        record: Option<Record>,
+        part: Option<Part>,
+    ) {
+        self.insert(id, Change { definition, record, part, is_checked: true });
+    }
+
+    fn insert(&mut self, id: EntityId, change: Change) {
+        if self.changed.insert(id, change).is_none() {
             self.order.push(id);
         }
     }
 
-    /// Rebuilds all that is made of an entity whose definition has changed.
+    /// Rebuilds all that is made of an entity whose definition has changed, and lets the faces that trim it follow.
     pub(crate) fn spread(&mut self, edited: EntityId) -> Result<(), RebuildError> {
         let model = self.model;
         let dependence = Dependence::of(&model.entities, &model.index);
@@ -117,9 +179,16 @@ impl<'a> Staged<'a> {
             let entity = &model.entities[at];
             let is_touched = dependence.made_from(at).iter().any(|input| {
                 let input = &model.entities[*input];
-                self.changed.get(&input.id).is_some_and(|(now, _)| **now != *input.definition)
+                self.changed.get(&input.id).is_some_and(|change| *change.definition != *input.definition)
             });
             let record = entity.record.clone().unwrap_or_default();
+            if let Some(carrier) = entity.carrier() {
+                if let Some(Change { definition, .. }) = self.changed.get(&carrier).filter(|_| is_touched) {
+                    let definition = Arc::clone(definition);
+                    self.set(entity.id, Arc::clone(&definition), Some(followed(record, &definition)));
+                }
+                continue;
+            }
             let Some(making) = record.making().filter(|_| is_touched) else { continue };
             if Standing::of(entity, model) != Standing::Made {
                 continue;
@@ -134,13 +203,55 @@ impl<'a> Staged<'a> {
         Ok(())
     }
 
-    pub(crate) fn changes(self) -> Changes {
-        let Self { order, mut changed, .. } = self;
-        order
-            .into_iter()
-            .filter_map(|id| changed.remove(&id).map(|(definition, record)| (id, definition, record)))
-            .collect()
+    /// What is to be taken over, once every trim holds of its new surface, and every entity is what those need that it is a part of.
+    pub(crate) fn changes(self, edited: EntityId) -> Result<Changes, RebuildError> {
+        let Self { model, order, mut changed } = self;
+        let mut changes = Vec::with_capacity(order.len());
+        for id in order {
+            let Some(mut change) = changed.remove(&id) else { continue };
+            let before = &model.entities[model.index[&id]];
+            if !change.is_checked && change.definition != before.definition {
+                change.check_trim().map_err(|source| RebuildError::Trim { edited, id, source })?;
+            }
+            let is = change.referent();
+            if is != Referent::of(before)
+                && let Some(one) = model.uses(id).find(|one| !one.admits(is))
+            {
+                return Err(RebuildError::Part { id, is, by: one.by, field: one.field() });
+            }
+            changes.push((id, change));
+        }
+        Ok(changes)
     }
+}
+
+impl Change {
+    /// Validates the trim against the new surface. What trimmed a surface that became a curve is no face any more.
+    fn check_trim(&mut self) -> Result<(), InvalidTrim> {
+        let (Some(part), Definition::NurbsSurface(surface)) = (&mut self.part, self.definition.as_ref()) else {
+            self.part = None;
+            return Ok(());
+        };
+        let (trimming, entry) = Trimming::enter(part.trimming.data(), surface)?;
+        part.trimming = Arc::new(trimming);
+        note(&entry, &self.definition, &mut self.record);
+        Ok(())
+    }
+
+    fn referent(&self) -> Referent {
+        match self.definition.as_ref() {
+            Definition::NurbsCurve(_) => Referent::Curve,
+            Definition::NurbsSurface(_) if self.part.is_some() => Referent::Trimmed,
+            Definition::NurbsSurface(_) => Referent::Surface,
+        }
+    }
+}
+
+/// The record of a face whose carrier has changed.
+fn followed(mut record: Record, definition: &Definition) -> Record {
+    record.revision = record.revision.saturating_add(1);
+    record.forget_stale(definition.fingerprint());
+    record
 }
 
 fn failed(edited: EntityId, id: EntityId, error: MakingError) -> RebuildError {
@@ -217,6 +328,9 @@ impl Model {
     pub fn edit(&mut self, id: EntityId, operation: impl Into<Operation>) -> Result<Vec<EntityId>, RebuildError> {
         let operation = operation.into();
         let entity = self.entity(id).ok_or(RebuildError::UnknownEntity { id })?;
+        if let Some(carrier) = entity.carrier() {
+            return Err(RebuildError::FollowsCarrier { id, carrier });
+        }
         match Standing::of(entity, self) {
             Standing::Made => {}
             Standing::Overridden => return Err(RebuildError::Overridden { id }),
@@ -273,6 +387,9 @@ impl Model {
 
     fn make_anew(&mut self, id: EntityId, record: &Record, making: &Making<'_>) -> Result<Vec<EntityId>, RebuildError> {
         let at = self.index[&id];
+        if let Some(carrier) = self.entities[at].carrier() {
+            return Err(RebuildError::FollowsCarrier { id, carrier });
+        }
         self.check_inputs(id, making.steps.iter().flat_map(|step| &step.inputs))?;
         let mut staged = Staged::new(self);
         let built = making.run(&staged).map_err(|error| failed(id, id, error))?;
@@ -283,7 +400,7 @@ impl Model {
             staged.spread(id)?;
         }
         let changed = staged.order.clone();
-        let changes = staged.changes();
+        let changes = staged.changes(id)?;
         self.take_over(changes);
         Ok(changed)
     }
@@ -313,7 +430,7 @@ impl Model {
     /// Takes changes over; nothing can fail any more.
     pub(crate) fn take_over(&mut self, changes: Changes) {
         let mut hashes: HashMap<EntityId, Fingerprint> = HashMap::new();
-        for (id, definition, record) in changes {
+        for (id, Change { definition, record, part, .. }) in changes {
             let entity = &mut self.entities[self.index[&id]];
             if definition != entity.definition {
                 hashes.insert(id, definition.fingerprint());
@@ -321,6 +438,7 @@ impl Model {
                 entity.original = None;
             }
             entity.definition = definition;
+            entity.part = part;
             entity.record = record;
             entity.prepared = OnceLock::new();
         }

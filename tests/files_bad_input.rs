@@ -88,8 +88,8 @@ const CASES: &[(&str, &str, &str)] = &[
     ),
     (
         "            id: 7,\n",
-        "            id: 7,\n            colour: 3,\n",
-        "17:13: entity 7: `Entity` has no field `colour`; its fields are `id`, `name`, `definition`, `knowledge`, `original`",
+        "            id: 7,\n            color: 3,\n",
+        "17:13: entity 7: `Entity` has no field `color`; its fields are `id`, `name`, `colour`, `definition`, `knowledge`, `original`",
     ),
     ("                degree: 2,\n", "", "12:13: entity 4: `NurbsCurve` lacks its field `degree`: add it"),
     (
@@ -100,7 +100,7 @@ const CASES: &[(&str, &str, &str)] = &[
     (
         "NurbsCurve(",
         "BezierCurve(",
-        "8:25: entity 4: `BezierCurve` is no Definition; there are `NurbsCurve`, `NurbsSurface`",
+        "8:25: entity 4: `BezierCurve` is no Definition; there are `NurbsCurve`, `NurbsSurface`, `TrimmedSurface`, `Body`",
     ),
     (
         "next_id: 9,",

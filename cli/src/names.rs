@@ -14,6 +14,7 @@ pub(crate) fn method(method: Method) -> &'static str {
         Method::Exclusion => "exclusion",
         Method::ControlPolygon => "control-polygon",
         Method::Bernstein => "bernstein",
+        Method::Trimmed => "trimmed",
     }
 }
 
@@ -27,6 +28,8 @@ pub(crate) fn place(place: Place) -> &'static str {
         Place::Pole => "pole",
         Place::Cusp => "cusp",
         Place::Crease => "crease",
+        Place::TrimEdge => "trim-edge",
+        Place::Vertex => "vertex",
     }
 }
 

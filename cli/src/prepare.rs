@@ -135,6 +135,9 @@ fn words(step: &Cleaning) -> String {
     let knots = |count: usize| counted(count as u64, "knot");
     match step {
         Cleaning::Clamped { direction } => format!("clamped the knots in {direction}"),
+        Cleaning::TrimClamped { share } => {
+            format!("clamped p-curves that left the domain by {} of its extent", rounded(share.0.max(share.1)))
+        }
         Cleaning::RemovedKnots { direction, knots: all } => format!("removed {} in {direction}", knots(all.len())),
         Cleaning::ReducedDegree { direction, from, to } => {
             format!("reduced the degree in {direction} from {from} to {to}")

@@ -242,6 +242,11 @@ pub enum Cleaning {
         /// The direction of the knots.
         direction: Direction,
     },
+    /// P-curves of the entity's trim left the domain, and were clamped to it.
+    TrimClamped {
+        /// By how much they left it, as a share of its extent in u and in v.
+        share: (f64, f64),
+    },
     /// Knots without which the entity is the same were removed.
     RemovedKnots {
         /// Their direction.

@@ -161,3 +161,41 @@ fn closed_forms() {
         assert_eq!(counts[3], 0, "uncertified");
     }
 }
+
+/// A maximum distance changes no answer within it, and what is beyond is told as such.
+#[test]
+fn maximum_distances() {
+    let mut random = Random(19);
+    let mut beyond = 0;
+    for case in 0..6 {
+        let surface = if case < 4 {
+            wavy(&mut random, case % 2 == 1, 2.0)
+        } else {
+            Cylinder::new(Frame::WORLD, 1.0, (0.0, 4.0), (0.0, TAU)).and_then(|s| s.to_nurbs()).expect("valid")
+        };
+        let loops = vec![star(&surface, DVec2::splat(0.5), 0.45, &mut random)];
+        let (trimming, _) =
+            Trimming::enter(TrimmingData { reversed: false, tolerance: 1e-6, loops }, &surface).expect("valid");
+        let size = surface.control_box().diagonal();
+        let prepared = Prepared::new(Arc::new(surface.into()), None).with_trimming(Arc::new(trimming));
+        let mut scratch = Scratch::default();
+        for k in 0..300 {
+            let p = prepared.bounds().centre() + [0.3, 1.0][k % 2] * size * random.point();
+            let whole = Query::new(p, QueryOptions::default()).expect("finite");
+            let foot = prepared.project(&whole, &mut scratch).expect("no limit");
+            for share in [0.0, 0.5, 0.999, 1.0 - 1e-7, 1.0, 1.0 + 1e-7, 1.001, 2.0] {
+                let limit = share * foot.distance;
+                let options = QueryOptions { max_distance: Some(limit), ..QueryOptions::default() };
+                let found = prepared.project(&Query::new(p, options).expect("finite"), &mut scratch);
+                if share >= 1.0 {
+                    let found = found.unwrap_or_else(|| panic!("{case} {k} {share}: {limit} {foot:?}"));
+                    assert!((found.distance - foot.distance).abs() <= 1e-9 * size, "{case} {k} {share}");
+                } else if foot.distance > 0.0 {
+                    assert!(found.is_none() || share > 0.9999, "{case} {k} {share}: {found:?} {foot:?}");
+                    beyond += usize::from(found.is_none());
+                }
+            }
+        }
+    }
+    assert!(beyond > 4000, "{beyond}");
+}

@@ -6,6 +6,7 @@ use std::path::PathBuf;
 
 use perpend_kernel::EntityId;
 
+use crate::body::InvalidBody;
 use crate::dependence::shown;
 use crate::entity::EntityError;
 
@@ -131,6 +132,15 @@ pub enum InvalidModel {
     Cycle {
         /// Entities each of which is made of the one before it, and the first of the last.
         circle: Vec<EntityId>,
+    },
+    /// A body is refused.
+    #[error("definition: {0}")]
+    Body(#[from] InvalidBody),
+    /// A body has what entities alone have.
+    #[error("a body has no {field}: remove it")]
+    BodyField {
+        /// The field.
+        field: &'static str,
     },
     /// An entity is refused for what it says itself.
     #[error(transparent)]

@@ -6,12 +6,13 @@
 use std::fmt::{self, Display};
 use std::io::{self, Write};
 
-use glam::DVec3;
-use perpend_kernel::{Definition, Direction, NurbsCurve, NurbsSurface};
+use glam::{DVec2, DVec3};
+use perpend_kernel::{Definition, Direction, EntityId, NurbsCurve, NurbsSurface, TrimCurve, TrimLoop};
 use perpend_knowledge::Record;
 use ron::ser::PrettyConfig;
 
-use crate::entity::Entity;
+use crate::body::{Body, Shell};
+use crate::entity::{Entity, Part};
 use crate::file::data::FORMAT;
 use crate::model::Model;
 
@@ -29,6 +30,7 @@ pub(super) fn write(model: &Model, out: impl Write) -> io::Result<()> {
     } else {
         writeln!(out, "    entities: [")?;
         model.entities().iter().try_for_each(|one| entity(&mut out, one))?;
+        model.bodies().iter().try_for_each(|one| body(&mut out, one))?;
         writeln!(out, "    ],")?;
     }
     writeln!(out, ")")?;
@@ -36,9 +38,11 @@ pub(super) fn write(model: &Model, out: impl Write) -> io::Result<()> {
 }
 
 fn entity(out: &mut impl Write, entity: &Entity) -> io::Result<()> {
-    writeln!(out, "        (\n            id: {},", entity.id())?;
-    writeln!(out, "            name: {},", ron::to_string(entity.name()).map_err(io::Error::other)?)?;
-    definition(out, 12, entity.definition())?;
+    head(out, entity.id(), entity.name(), entity.colour())?;
+    match &entity.part {
+        Some(part) => trimmed(out, 12, entity.definition(), part)?,
+        None => definition(out, 12, entity.definition())?,
+    }
     if let Some(known) = entity.record() {
         record(out, 12, known)?;
     }
@@ -51,6 +55,69 @@ fn entity(out: &mut impl Write, entity: &Entity) -> io::Result<()> {
         writeln!(out, "            )),")?;
     }
     writeln!(out, "        ),")
+}
+
+fn body(out: &mut impl Write, body: &Body) -> io::Result<()> {
+    head(out, body.id(), body.name(), body.colour())?;
+    writeln!(out, "            definition: Body(\n                shells: [")?;
+    for Shell { faces, closed } in body.shells() {
+        writeln!(out, "                    (")?;
+        list(out, 24, "faces: [", faces.iter(), "],")?;
+        writeln!(out, "                        closed: {closed},\n                    ),")?;
+    }
+    writeln!(out, "                ],\n            ),\n        ),")
+}
+
+/// What entities and bodies begin with.
+fn head(out: &mut impl Write, id: EntityId, name: &str, colour: Option<[f64; 3]>) -> io::Result<()> {
+    writeln!(out, "        (\n            id: {id},")?;
+    writeln!(out, "            name: {},", ron::to_string(name).map_err(io::Error::other)?)?;
+    match colour {
+        Some(colour) => writeln!(out, "            colour: Some({}),", Point(DVec3::from_array(colour))),
+        None => Ok(()),
+    }
+}
+
+fn trimmed(out: &mut impl Write, indent: usize, definition: &Definition, part: &Part) -> io::Result<()> {
+    let within = indent + 4;
+    writeln!(out, "{:indent$}definition: TrimmedSurface(", "")?;
+    write!(out, "{:within$}surface: ", "")?;
+    match (part.carrier, definition) {
+        (None, Definition::NurbsSurface(own)) => {
+            write!(out, "Own(")?;
+            surface(out, within + 4, own)?;
+            writeln!(out, "{:within$})),", "")?;
+        }
+        (Some(id), _) => writeln!(out, "Ref({id}),")?,
+        (None, Definition::NurbsCurve(_)) => unreachable!("what is trimmed is a surface"),
+    }
+    let trimming = &part.trimming;
+    writeln!(out, "{:within$}reversed: {},", "", trimming.reversed())?;
+    writeln!(out, "{:within$}tolerance: {},", "", Number(trimming.tolerance()))?;
+    writeln!(out, "{:within$}loops: [", "")?;
+    trimming.loops().iter().try_for_each(|one| trim_loop(out, within + 4, one))?;
+    writeln!(out, "{:within$}],\n{:indent$}),", "", "")
+}
+
+fn trim_loop(out: &mut impl Write, indent: usize, one: &TrimLoop) -> io::Result<()> {
+    let within = indent + 4;
+    writeln!(out, "{:indent$}(\n{:within$}outer: {},\n{:within$}curves: [", "", "", one.outer, "")?;
+    one.curves.iter().try_for_each(|curve| trim_curve(out, within + 4, curve))?;
+    writeln!(out, "{:within$}],\n{:indent$}),", "", "")
+}
+
+fn trim_curve(out: &mut impl Write, indent: usize, TrimCurve { curve, edge }: &TrimCurve) -> io::Result<()> {
+    let within = indent + 4;
+    writeln!(out, "{:indent$}(\n{:within$}degree: {},", "", "", curve.degree())?;
+    list(out, within, "knots: [", curve.knots().as_slice().iter().map(number), "],")?;
+    list(out, within, "points: [", curve.points().map(Parameters), "],")?;
+    if let Some(weights) = curve.weights() {
+        list(out, within, "weights: Some([", weights.iter().map(number), "]),")?;
+    }
+    if let Some(edge) = edge {
+        writeln!(out, "{:within$}edge: Some({edge}),", "")?;
+    }
+    writeln!(out, "{:indent$}),", "")
 }
 
 fn definition(out: &mut impl Write, indent: usize, definition: &Definition) -> io::Result<()> {
@@ -162,5 +229,14 @@ impl Display for Point {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let DVec3 { x, y, z } = self.0;
         write!(f, "({x:?}, {y:?}, {z:?})")
+    }
+}
+
+struct Parameters(DVec2);
+
+impl Display for Parameters {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let DVec2 { x, y } = self.0;
+        write!(f, "({x:?}, {y:?})")
     }
 }

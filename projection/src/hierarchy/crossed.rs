@@ -22,7 +22,7 @@ use super::ranges::Slopes;
 use super::state::{Foot, State};
 use super::walk::close;
 use super::{Hierarchy, LocalSolution, REFINED_DEPTH, ROUNDING, Workspace, glance, squared};
-use crate::query::Query;
+use crate::query::{Query, QueryOptions};
 use crate::statistics::Work;
 
 /// The index of the leaf of a point that lies in none: a point of the boundary.
@@ -129,6 +129,8 @@ pub(crate) enum TrimmedFoot {
     Inside(LocalSolution, Option<DVec2>),
     /// The boundary's own foot; the distance from the query is nowhere less than this, in the entity's own coordinates.
     OnBoundary { lower_bound: f64, done: Work },
+    /// Proven: no point lies within the query's `max_distance`.
+    Beyond(Work),
 }
 
 impl Hierarchy {
@@ -141,7 +143,7 @@ impl Hierarchy {
         boundary: &mut dyn FnMut(Option<f64>) -> Option<BoundaryPoint>,
         workspace: &mut Workspace,
     ) -> TrimmedFoot {
-        let Workspace { memory, candidates, lists } = workspace;
+        let Workspace { memory, candidates, lists } = &mut *workspace;
         let point = self.frame.enter(query.point);
         let on_boundary =
             |point: DVec3, distance: f64| Foot { leaf: NO_LEAF, s: 0.0, t: 0.0, next: (0.0, 0.0), point, distance };
@@ -150,9 +152,13 @@ impl Hierarchy {
             state.done.boxes += boxes;
             self.visit_first(query, first, &mut state)
         });
-        let limit = (state.best.leaf != NO_LEAF).then_some(state.best.distance);
+        let wanted = query.options.max_distance.map(|_| state.goal.wanted);
+        let inside = (state.best.leaf != NO_LEAF).then_some(state.best.distance);
+        let limit = wanted.into_iter().chain(inside).reduce(f64::min);
         let mut bound = limit.unwrap_or(f64::INFINITY);
-        if let Some(found) = boundary(limit) {
+        let found = boundary(limit);
+        let is_boundary_known = found.is_some();
+        if let Some(found) = found {
             bound = found.lower_bound;
             if found.distance < state.best.distance || state.best.leaf == NO_LEAF {
                 let gap = state.goal.gap;
@@ -165,6 +171,19 @@ impl Hierarchy {
             }
         }
         self.walk(visited, &mut state, f64::INFINITY, memory, candidates);
+        let proven = state.tau().min(state.open).min(bound);
+        // what is beyond by no more than rounding is answered, and judged in the model's unit
+        let rounding = 64.0 * ROUNDING * (1.0 + state.point.length());
+        if state.best.distance > state.goal.wanted + rounding {
+            if proven >= state.goal.wanted {
+                return TrimmedFoot::Beyond(state.done);
+            }
+            if state.best.leaf == NO_LEAF && !is_boundary_known {
+                // the anchor is no foot, and the work did not suffice for the proof that there is none
+                let options = QueryOptions { max_distance: None, ..query.options };
+                return self.project_trimmed(&Query { options, ..*query }, anchor, boundary, workspace);
+            }
+        }
         let lower = state.tau().min(state.open) - self.reserve - 10.0 * ROUNDING * state.point.length();
         let lower = lower.min(bound).max(0.0);
         if state.best.leaf == NO_LEAF {
@@ -172,7 +191,8 @@ impl Hierarchy {
         }
         let best = state.best;
         let mut solution = self.solution(&mut state, self.coincidence(query));
-        solution.lower_bound = solution.lower_bound.min(lower);
+        // polished feet may have left the region: their distance is no bound
+        solution.lower_bound = lower;
         let trim = self.trim.as_ref().expect("a trimmed surface");
         let kept = |at: DVec2| trim.trimming.region().side(at) != perpend_kernel::Side::Outside;
         let (u, v) = self.leaves[best.leaf as usize].parameters(best.s, best.t);

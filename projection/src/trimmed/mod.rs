@@ -99,6 +99,9 @@ impl Trimmed {
         let gap = query.options.gap.unwrap_or(DEFAULT_GAP * frame.size);
         let coincidence = query.options.coincidence.unwrap_or(1e-6 * frame.size);
         let options = QueryOptions { gap: Some(gap), coincidence: Some(coincidence), ..query.options };
+        if query.options.max_distance.is_some_and(|limit| self.is_beyond(query.point, limit)) {
+            return None;
+        }
         let foot = self.answer(&Query { options, ..*query }, closed_form, reader, scratch)?;
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
         if foot.distance <= limit {
@@ -127,7 +130,9 @@ impl Trimmed {
                     if let Some(at) = self.inside(reader, solution.u, solution.v) {
                         return Some(self.written_foot(reader, at, solution, closed_form.method()));
                     }
-                    let foot = self.on_boundary(query, None, scratch)?;
+                    let off = 2.0 * closed_form.deviation() + self.length(self.made().boundary.error());
+                    let limit = query.options.max_distance.map(|limit| limit + off);
+                    let foot = self.on_boundary(query, limit, scratch)?;
                     let lower = self.length(foot.solution.lower_bound) - 2.0 * closed_form.deviation();
                     return Some(self.written(
                         query,
@@ -145,18 +150,16 @@ impl Trimmed {
                 Solved::Declined => scratch.statistics.declined += 1,
             }
         }
-        let outcome = self.by_hierarchy(query, scratch);
-        Some(self.written(query, reader, outcome))
+        self.by_hierarchy(query, scratch).map(|outcome| self.written(query, reader, outcome))
     }
 
-    fn by_hierarchy(&self, query: &Query, scratch: &mut Scratch) -> Outcome {
+    fn by_hierarchy(&self, query: &Query, scratch: &mut Scratch) -> Option<Outcome> {
         let made = self.made();
-        // the limit is judged by the answer
-        let query = Query { options: QueryOptions { max_distance: None, ..query.options }, ..*query };
         let mut workspace = std::mem::take(&mut scratch.hierarchy);
         let mut on_boundary = None;
         let mut boundary = |limit: Option<f64>| {
-            let foot = self.on_boundary(&query, limit.map(|limit| self.length(limit)), scratch)?;
+            let foot =
+                self.on_boundary(query, limit.map(|limit| self.length(limit + made.boundary.error())), scratch)?;
             let point = BoundaryPoint {
                 point: made.patches.frame().enter(query.point) + foot.solution.offset,
                 distance: foot.solution.distance,
@@ -165,9 +168,13 @@ impl Trimmed {
             on_boundary = Some(foot);
             Some(point)
         };
-        let found = self.hierarchy().project_trimmed(&query, made.anchor, &mut boundary, &mut workspace);
+        let found = self.hierarchy().project_trimmed(query, made.anchor, &mut boundary, &mut workspace);
         scratch.hierarchy = workspace;
-        match found {
+        Some(match found {
+            TrimmedFoot::Beyond(done) => {
+                scratch.statistics.proof += done;
+                return None;
+            }
             TrimmedFoot::Inside(solution, instead) => {
                 scratch.statistics.proof += solution.done;
                 let at = instead.unwrap_or(DVec2::new(solution.u, solution.v));
@@ -185,7 +192,14 @@ impl Trimmed {
                     method: Method::Trimmed,
                 }
             }
-        }
+        })
+    }
+
+    /// Whether the box of the trimmed part tells that it is beyond a distance.
+    fn is_beyond(&self, p: DVec3, limit: f64) -> bool {
+        let bounds = self.bounds();
+        let rounding = 8.0 * f64::EPSILON * bounds.reach().max(p.abs().max_element());
+        bounds.distance_squared(p).sqrt() - rounding > limit
     }
 
     /// The boundary's foot, within `limit` (in the model's unit) if there is one.
