@@ -24,6 +24,8 @@ Exit codes: 0 done; 1 an input is wrong (standard error says what, where and how
 
 #[derive(Debug, Subcommand)]
 pub(crate) enum Command {
+    /// Import a part from a STEP file: faces, edges and bodies become a model
+    Import(ImportArguments),
     /// Validate a model file and say what it holds
     Check(CheckArguments),
     /// Acquire what can be known of the entities and write the model with it
@@ -65,6 +67,25 @@ impl TrustArguments {
     pub(crate) fn read(&self, model: &Path) -> Result<Model, ReadError> {
         Model::read_with(model, if self.repair { Trust::Repair } else { Trust::Refuse })
     }
+}
+
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ImportArguments {
+    /// The part (STEP: AP203, AP214, AP242)
+    pub(crate) part: PathBuf,
+    /// The file for the model (RON), written whole or not at all
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Take it for success if something was not understood: it is listed, and the rest is written, in either case
+    #[arg(long)]
+    pub(crate) partial: bool,
+    /// The largest file that is read, in MiB [default: 512]
+    #[arg(long, value_name = "MIB", value_parser = value_parser!(u64).range(1..=1 << 20))]
+    pub(crate) max_megabytes: Option<u64>,
+    /// How long the import may take, in seconds [default: 60]
+    #[arg(long, value_name = "SECONDS", value_parser = value_parser!(u64).range(1..=1_000_000))]
+    pub(crate) max_seconds: Option<u64>,
 }
 
 #[derive(Debug, Args)]

@@ -23,6 +23,8 @@ pub(crate) enum CommandError {
     Points { name: String, problem: PointsError },
     #[error("{}: {source}", model.display())]
     Edit { model: PathBuf, source: EditError },
+    #[error("{}: {source}", part.display())]
+    Import { part: PathBuf, source: perpend_step::ReadError },
     #[error(transparent)]
     Query(#[from] QueryError),
     #[error(transparent)]

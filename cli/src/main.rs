@@ -6,6 +6,7 @@ mod deviation_report;
 mod error;
 mod explain;
 mod impact;
+mod import;
 mod learn;
 mod names;
 mod prepare;
@@ -25,6 +26,7 @@ fn main() -> ExitCode {
     let arguments = Arguments::parse();
     survive_file_size_limit();
     let done = match arguments.command {
+        Command::Import(arguments) => import::run(&arguments),
         Command::Check(arguments) => check::run(&arguments),
         Command::Learn(arguments) => learn::run(&arguments),
         Command::Show(arguments) => show::run(&arguments),

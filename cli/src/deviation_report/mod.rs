@@ -9,6 +9,7 @@ mod scene;
 mod statistics;
 mod survey;
 
+use std::collections::HashSet;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -42,14 +43,13 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<ExitCode, CommandError>
     if model.is_empty() {
         return Err(CommandError::NoEntities { model: arguments.model.clone() });
     }
-    let shown = match arguments.entity {
-        None => model.entities().iter().collect(),
-        Some(id) => {
-            vec![model.entity(id).ok_or_else(|| CommandError::unknown_entity(arguments.model.clone(), &model, id))?]
-        }
-    };
-
+    if let Some(id) = arguments.entity
+        && model.entity(id).is_none()
+    {
+        return Err(CommandError::unknown_entity(arguments.model.clone(), &model, id));
+    }
     let (survey, bad) = survey(arguments, &model)?;
+    let shown = shown(&model, arguments.entity, &survey);
     let size = size(&shown);
     let chord = arguments.chord.unwrap_or(if size > 0.0 { CHORD * size } else { CHORD });
     let part = Part::new(&shown, chord).expect("the command line takes no other chord errors");
@@ -111,6 +111,17 @@ fn measured(line: u64, point: DVec3, entity: EntityId, foot: &FootPoint, engine:
         has_side: foot.signed_distance.is_some(),
         is_certified: engine.is_certified(entity, foot, point),
     }
+}
+
+/// What is drawn: the entity, or all that are no parts of faces, since the faces stand for those; and what is nearest to a point.
+fn shown<'a>(model: &'a Model, entity: Option<EntityId>, survey: &Survey) -> Vec<&'a Entity> {
+    let carriers = model.entities().iter().filter_map(Entity::carrier);
+    let edges = model.entities().iter().filter_map(Entity::trimming).flat_map(|trimming| trimming.edges());
+    let parts: HashSet<EntityId> = carriers.chain(edges).collect();
+    let is_shown = |id: EntityId| {
+        survey.of_entity.contains_key(&id) || entity.map_or(!parts.contains(&id), |entity| entity == id)
+    };
+    model.entities().iter().filter(|entity| is_shown(entity.id())).collect()
 }
 
 /// The diagonal of the entities' control points' box.

@@ -73,6 +73,7 @@
   const face = decode(scene.points.face, Uint32Array);
   const flags = decode(scene.points.flags, Uint8Array);
   const count = deviation.length;
+  const coloured = scene.faces.filter((one) => one.colour !== null && one.indices > 0);
   const NO_SIDE = 1;
   const NOT_CERTIFIED = 2;
 
@@ -358,11 +359,13 @@
     gl.polygonOffset(1, 1);
     gl.uniform3fv(made.part.uniform("colour"), colour);
     gl.drawElements(gl.TRIANGLES, triangles.length, gl.UNSIGNED_INT, 0);
-    if (highlighted >= 0) {
-      const { first, indices } = scene.faces[highlighted];
-      gl.uniform3fv(made.part.uniform("colour"), marked);
+    // once more over it, in the same places
+    const again = ({ first, indices }, colour) => {
+      gl.uniform3fv(made.part.uniform("colour"), colour);
       gl.drawElements(gl.TRIANGLES, indices, gl.UNSIGNED_INT, 4 * first);
-    }
+    };
+    coloured.forEach((one) => again(one, one.colour));
+    if (highlighted >= 0) again(scene.faces[highlighted], marked);
     gl.disable(gl.POLYGON_OFFSET_FILL);
   };
 

@@ -40,6 +40,8 @@ struct FaceForm {
     /// The first of its corners among those of the triangles, and how many there are; of a curve none.
     first: usize,
     indices: usize,
+    /// Red, green and blue from 0 to 1, where it has a colour of its own.
+    colour: Option<[f64; 3]>,
 }
 
 #[derive(Debug, Default, Serialize)]
@@ -83,6 +85,7 @@ pub(super) struct Part {
 struct Drawn {
     id: EntityId,
     name: String,
+    colour: Option<[f64; 3]>,
     form: Form,
 }
 
@@ -100,7 +103,7 @@ impl Part {
         let drawn = entities.par_iter().map(|entity| {
             let (form, error) = match &**entity.definition() {
                 Definition::NurbsSurface(surface) => {
-                    let mesh = tessellate(surface, None, chord, limits)?;
+                    let mesh = tessellate(surface, entity.trimming().map(AsRef::as_ref), chord, limits)?;
                     let error = mesh.error;
                     (Form::Face(mesh), error)
                 }
@@ -109,7 +112,8 @@ impl Part {
                     (Form::Curve(line.points), line.error)
                 }
             };
-            Ok((Drawn { id: entity.id(), name: entity.name().to_owned(), form }, error))
+            let (id, name, colour) = (entity.id(), entity.name().to_owned(), entity.colour());
+            Ok((Drawn { id, name, colour, form }, error))
         });
         let drawn = drawn.collect::<Result<Vec<_>, InvalidChord>>()?;
         let error = drawn.iter().map(|(_, error)| *error).fold(0.0, f64::max);
@@ -160,7 +164,7 @@ impl Scene {
                 Form::Curve(_) => edges.extend(corners.windows(2).map(|ends| [ends[0], ends[1]])),
             }
             let indices = 3 * triangles.len() - first;
-            faces.push(FaceForm { id: drawn.id, name: drawn.name.clone(), first, indices });
+            faces.push(FaceForm { id: drawn.id, name: drawn.name.clone(), first, indices, colour: drawn.colour });
         }
         Self {
             unit,

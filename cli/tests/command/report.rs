@@ -96,7 +96,7 @@ fn the_part_in_the_page_is_the_surface_with_its_edges() {
     assert!(vertices.chunks(3).all(|corner| corner[0].abs() == 2.0 && corner[1].abs() == 2.0 && corner[2] == 0.0));
     assert!(page.singles("/part/normals").chunks(3).all(|normal| normal == [0.0, 0.0, 1.0]));
     assert_eq!(page.bytes("/part/triangles").len(), 2 * 3 * 4);
-    assert_eq!(page.scene()["faces"].to_string(), r#"[{"first":0,"id":2,"indices":6,"name":"table"}]"#);
+    assert_eq!(page.scene()["faces"].to_string(), r#"[{"colour":null,"first":0,"id":2,"indices":6,"name":"table"}]"#);
     let edges = page.singles("/edges");
     let length = |ends: &[f32]| (ends[0] - ends[3]).abs() + (ends[1] - ends[4]).abs();
     assert_eq!((edges.len() / 6, edges.chunks(6).map(length).sum::<f32>()), (4, 16.0), "all around, no diagonal");

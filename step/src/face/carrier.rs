@@ -29,6 +29,8 @@ pub(super) struct Carrier {
     pub(super) scale: DVec2,
     /// What can be told apart, a length.
     pub(super) tolerance: f64,
+    /// Nearer than this to a pole is at the pole: how far edges lie off the surface counts too.
+    pub(super) pole_tolerance: f64,
 }
 
 /// A line of a constant coordinate that is one point.
@@ -64,6 +66,7 @@ impl Carrier {
             normal_kept: false,
             scale,
             tolerance,
+            pole_tolerance: tolerance,
         };
         let frame = |frame: &Frame| Frame::new(frame.centre, frame.axis, frame.xdir);
         Ok(match surface {
@@ -127,7 +130,16 @@ impl Carrier {
         let periods = [0, 1].map(|k| numeric.closed[k].then(|| domain[k].1 - domain[k].0));
         let limits = [0, 1].map(|k| if numeric.closed[k] { NO_LIMIT } else { domain[k] });
         let (poles, scale) = (numeric.poles(), numeric.scale());
-        Self { form: Form::Numeric(numeric), periods, limits, poles, normal_kept, scale, tolerance }
+        Self {
+            form: Form::Numeric(numeric),
+            periods,
+            limits,
+            poles,
+            normal_kept,
+            scale,
+            tolerance,
+            pole_tolerance: tolerance,
+        }
     }
 
     /// The coordinates of the surface's point nearest to `p`; where `near` is given, those of a point about there.
@@ -203,7 +215,7 @@ impl Carrier {
 
     /// The pole that a point cannot be told from.
     pub(super) fn pole(&self, p: DVec3) -> Option<usize> {
-        self.poles.iter().position(|pole| pole.point.distance(p) <= self.tolerance)
+        self.poles.iter().position(|pole| pole.point.distance(p) <= self.pole_tolerance)
     }
 
     /// The NURBS of a surface that is only known as one.

@@ -27,6 +27,12 @@ pub(super) struct Fit<'a> {
     pub(super) tolerance: f64,
 }
 
+/// How far a line of constant coordinate may lie from the projection of an edge, as a share of how far the edge lies off the surface.
+const STRAIGHT: f64 = 1.0;
+
+/// The same of a curve that is fitted to it.
+const FITTED: f64 = 0.1;
+
 /// A p-curve before its ends are fixed.
 #[derive(Debug, Clone)]
 pub(super) struct Flat {
@@ -40,7 +46,7 @@ pub(super) struct Flat {
 }
 
 impl Flat {
-    fn line(from: DVec2, to: DVec2, constant: [bool; 2], edge: Option<usize>) -> Self {
+    pub(super) fn line(from: DVec2, to: DVec2, constant: [bool; 2], edge: Option<usize>) -> Self {
         Self { degree: 1, knots: vec![0.0, 0.0, 1.0, 1.0], points: vec![from, to], weights: None, constant, edge }
     }
 
@@ -99,6 +105,7 @@ impl Fit<'_> {
         let value = 0.5 * (from[k] + end[k]);
         let forth = end[1 - k] > from[1 - k];
         let hair = self.carrier.hair(1 - k);
+        let tolerance = self.tolerance.max(STRAIGHT * piece.off);
         let along = piece.at.windows(2).all(|pair| {
             let step = pair[1][1 - k] - pair[0][1 - k];
             if forth { step >= -hair } else { step <= hair }
@@ -108,8 +115,7 @@ impl Fit<'_> {
                 let mut moved = *at;
                 moved[k] = value;
                 let most = 0.25 * self.carrier.periods[k].unwrap_or(f64::INFINITY);
-                (at[k] - value).abs() < most
-                    && self.carrier.point(*at).distance(self.carrier.point(moved)) <= self.tolerance
+                (at[k] - value).abs() < most && self.carrier.point(*at).distance(self.carrier.point(moved)) <= tolerance
             })
     }
 
@@ -201,11 +207,12 @@ impl Fit<'_> {
 
     fn refine(&self, piece: &Piece, t: (f64, f64), depth: u32, out: &mut Vec<Cubic>) {
         let cubic = self.cubic(piece, t);
+        let tolerance = self.tolerance.max(FITTED * piece.off);
         let is_near = |share: f64| {
             let wanted = self.parameters(piece, t.0 + share * (t.1 - t.0));
             let found = cubic.point(share);
             let surface = &self.window.surface;
-            surface.point(found.x, found.y).distance(surface.point(wanted.x, wanted.y)) <= self.tolerance
+            surface.point(found.x, found.y).distance(surface.point(wanted.x, wanted.y)) <= tolerance
         };
         if depth == DEPTH || [0.5, 0.25, 0.75, 0.1, 0.9].into_iter().all(is_near) {
             out.push(cubic);

@@ -27,7 +27,7 @@ use window::Window;
 
 pub(crate) use edge::edge_curve;
 
-use crate::source::{SourceFace, SourceLoop};
+use crate::source::{SourceCurve, SourceEdge, SourceFace, SourceLoop, SourceSurface};
 
 /// What can be told apart in a file, as a share of a face's size, where the file does not say more.
 const RESOLUTION: f64 = 1e-6;
@@ -76,21 +76,27 @@ pub(crate) enum FaceError {
     Unbounded,
     #[error("it has no extent along one of its surface's parameters")]
     Empty,
-    #[error("a loop is open: {gap:e} between edge #{from} and edge #{to}")]
-    Open { from: u64, to: u64, gap: f64 },
+    #[error("the loop of edges {edges:?} is open by {gap:e}")]
+    Open { edges: Vec<u64>, gap: f64 },
+    #[error("it was given up: the time was over")]
+    GivenUp,
+    #[error("building it failed within perpend: report the file")]
+    Failed,
     #[error(transparent)]
     Definition(#[from] InvalidDefinition),
     #[error(transparent)]
     Edit(#[from] InvalidEdit),
 }
 
-/// Builds a face from the curves of the part's edges ([`edge_curve`], in their order); `tolerance` is the file's uncertainty, a length.
+/// Builds a face of a part from the part's edges and their curves ([`edge_curve`], in their order); `tolerance` is the file's uncertainty, a
+/// length.
 ///
 /// # Errors
 ///
 /// An edge that it uses has no curve; its surface is none; its loops are open or bound nothing.
 pub(crate) fn build(
     face: &SourceFace,
+    edges: &[SourceEdge],
     curves: &[Result<NurbsCurve, FaceError>],
     tolerance: f64,
 ) -> Result<BuiltFace, FaceError> {
@@ -120,7 +126,12 @@ pub(crate) fn build(
         size = size_alone(&face.surface);
     }
     let apart = tolerance.min(COARSEST * size).max(RESOLUTION * size);
-    let carrier = Carrier::new(&face.surface, &samples, size, apart)?;
+    let mut carrier = Carrier::new(&face.surface, &samples, size, apart)?;
+    if !carrier.poles.is_empty() {
+        let off = |p: &glam::DVec3| carrier.point(carrier.inverse(*p, None)).distance(*p);
+        let off = samples.iter().step_by(4).map(off).fold(0.0, f64::max);
+        carrier.pole_tolerance = (2.0 * off).min(COARSEST * size).max(apart);
+    }
     let left = if carrier.normal_kept == face.same_sense { 1.0 } else { -1.0 };
     let mut rings: Vec<Ring> = Vec::new();
     for one in &face.loops {
@@ -136,14 +147,7 @@ pub(crate) fn build(
     if carrier.periods == [None; 2] && !rings.is_empty() {
         rings = nested(rings).into_iter().map(|(ring, _)| ring).collect();
     }
-    let mut off = 0.0_f64;
-    for piece in rings.iter().flat_map(|ring| &ring.pieces) {
-        if let Some(edge) = piece.edge {
-            for (t, at) in piece.t.iter().zip(&piece.at) {
-                off = off.max(carrier.point(*at).distance(own[edge].point(*t)));
-            }
-        }
-    }
+    let off = rings.iter().flat_map(|ring| &ring.pieces).fold(0.0_f64, |most, piece| most.max(piece.off));
     let opened = match open::open(&carrier, &own, rings.clone()) {
         // a file with its loops the wrong way round
         Err(FaceError::Unbounded) => open::open(&carrier, &own, rings.into_iter().map(Ring::reversed).collect())?,
@@ -156,10 +160,17 @@ pub(crate) fn build(
     let window = Window::new(&carrier, &rings, opened.full)?;
     let fit_tolerance = (0.1 * tolerance).min(1e-7 * size).max(1e-12 * size);
     let fit = Fit { carrier: &carrier, window: &window, curves: &own, tolerance: fit_tolerance };
-    let mut loops = Vec::new();
+    // ends nearer than this are one vertex
+    let one_vertex = (4.0 * off).max(10.0 * apart);
+    let (mut loops, mut widest) = (Vec::new(), 0.0_f64);
     for (ring, outer) in nested(rings) {
         let flats: Vec<Flat> = ring.pieces.iter().map(|piece| fit.curve(piece)).collect();
-        let flats = closed(&window, flats, WIDEST_GAP * size)?;
+        let (flats, gap) = closed(&window, flats, one_vertex);
+        if gap > WIDEST_GAP * size {
+            let entities = ring.pieces.iter().filter_map(|piece| piece.edge).map(|edge| edges[used[edge]].entity);
+            return Err(FaceError::Open { edges: entities.collect(), gap });
+        }
+        widest = widest.max(gap.min(one_vertex));
         let curves = flats.into_iter().map(|flat| {
             let edge = flat.edge.map(|edge| used[edge]);
             (flat.data(), edge)
@@ -167,20 +178,17 @@ pub(crate) fn build(
         loops.push(BuiltLoop { outer, curves: curves.collect() });
     }
     let reversed = left < 0.0;
-    let tolerance = tolerance.max(1.5 * off + fit_tolerance);
+    let tolerance = tolerance.max(1.5 * off + fit_tolerance).max(widest);
     Ok(BuiltFace { surface: window.surface, shape: window.shape, reversed, tolerance, loops })
 }
 
 /// The size of a surface that is a whole face.
-fn size_alone(surface: &crate::source::SourceSurface) -> f64 {
-    use crate::source::SourceSurface;
+fn size_alone(surface: &SourceSurface) -> f64 {
     match surface {
         SourceSurface::Sphere { radius, .. } => 2.0 * radius,
         SourceSurface::Torus { major, minor, .. } => 2.0 * (major + minor),
         SourceSurface::Nurbs(surface) => surface.control_box().diagonal(),
-        SourceSurface::Revolution { profile: crate::source::SourceCurve::Nurbs(profile), .. } => {
-            profile.control_box().diagonal()
-        }
+        SourceSurface::Revolution { profile: SourceCurve::Nurbs(profile), .. } => profile.control_box().diagonal(),
         _ => 1.0,
     }
 }
@@ -223,21 +231,22 @@ fn is_within(inner: &[DVec2], outer: &[DVec2]) -> bool {
     2 * inside.count() > inner.len()
 }
 
-/// P-curves with common ends. Where one keeps a parameter constant, their common end does too.
-fn closed(window: &Window, flats: Vec<Flat>, widest: f64) -> Result<Vec<Flat>, FaceError> {
+/// P-curves with common ends, and the widest gap between two of them. Where one keeps a parameter constant, their common end does too; what
+/// is farther apart than `one_vertex` is joined by a straight line.
+fn closed(window: &Window, flats: Vec<Flat>, one_vertex: f64) -> (Vec<Flat>, f64) {
     let count = flats.len();
-    let mut joints = Vec::with_capacity(count);
+    let mut widest = 0.0_f64;
+    // where each ends, and where the next begins
+    let mut joints: Vec<(DVec2, DVec2)> = Vec::with_capacity(count);
     for i in 0..count {
         let (a, b) = (&flats[i], &flats[(i + 1) % count]);
         let (end, start) = (a.end(), b.start());
         let at = |place: DVec2| window.surface.point(place.x, place.y);
         let gap = at(end).distance(at(start));
-        if gap > widest {
-            return Err(FaceError::Open {
-                from: a.edge.unwrap_or_default() as u64,
-                to: b.edge.unwrap_or_default() as u64,
-                gap,
-            });
+        widest = widest.max(gap);
+        if gap > one_vertex {
+            joints.push((end, start));
+            continue;
         }
         let mut joint = 0.5 * (end + start);
         for k in 0..2 {
@@ -247,10 +256,19 @@ fn closed(window: &Window, flats: Vec<Flat>, widest: f64) -> Result<Vec<Flat>, F
                 _ => {}
             }
         }
-        joints.push(joint);
+        joints.push((joint, joint));
     }
-    let ended = |(i, flat): (usize, Flat)| flat.with_ends(joints[(i + count - 1) % count], joints[i]);
-    let ended: Vec<Flat> = flats.into_iter().enumerate().map(ended).collect();
-    // what shrank to nothing is gone
-    Ok(ended.into_iter().filter(|flat| flat.degree > 1 || flat.start() != flat.end()).collect())
+    let mut all = Vec::with_capacity(count);
+    for (i, flat) in flats.into_iter().enumerate() {
+        let flat = flat.with_ends(joints[(i + count - 1) % count].1, joints[i].0);
+        // what shrank to nothing is gone
+        if flat.degree > 1 || flat.start() != flat.end() {
+            all.push(flat);
+        }
+        let (end, start) = joints[i];
+        if end != start {
+            all.push(Flat::line(end, start, [false; 2], None));
+        }
+    }
+    (all, widest)
 }

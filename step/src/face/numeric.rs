@@ -15,7 +15,13 @@ use super::carrier::Pole;
 use crate::source::SourceCurve;
 
 /// Steps of Newton's method from a near point, before the certified projection is asked.
-const STEPS: usize = 12;
+const STEPS: usize = 24;
+
+/// How often a step that leads away is halved.
+const HALVINGS: usize = 12;
+
+/// A step below this share of the domain ends at its start.
+const CONVERGED: f64 = 1e-13;
 
 /// A NURBS surface with the nearest points on it.
 #[derive(Debug)]
@@ -168,16 +174,20 @@ impl Numeric {
     /// The parameters of the nearest point; where Newton's method leads from `near` to a point within the tolerance, those.
     pub(super) fn inverse(&self, p: DVec3, near: Option<DVec2>) -> DVec2 {
         let followed = near.map(|near| self.newton(p, self.inside(near)));
-        if let Some((at, distance)) = followed
+        if let Some((at, distance, true)) = followed
             && distance <= self.tolerance
         {
             return at;
         }
-        let certified = self.certified(p);
+        let certified = self.certified(p).map(|foot| {
+            let (polished, distance, _) = self.newton(p, foot);
+            let proven = self.point(foot).distance(p);
+            if distance <= proven { (polished, distance) } else { (foot, proven) }
+        });
         match (followed, certified) {
-            (Some((at, distance)), Some(foot)) if distance <= 1.01 * self.point(foot).distance(p) => at,
-            (_, Some(foot)) => self.newton(p, foot).0,
-            (Some((at, _)), None) => at,
+            (Some((at, distance, true)), Some((_, proven))) if distance <= 1.01 * proven => at,
+            (_, Some((foot, _))) => foot,
+            (Some((at, ..)), None) => at,
             (None, None) => self.inside(DVec2::ZERO),
         }
     }
@@ -192,12 +202,31 @@ impl Numeric {
         Some(DVec2::new(foot.parameter.u(), foot.parameter.v()?))
     }
 
-    /// Where Gauss's steps lead from a start, and the distance there.
-    fn newton(&self, p: DVec3, start: DVec2) -> (DVec2, f64) {
+    /// A step that would leave the domain, made along the border that it would cross: normal equations with rows `[(right side, diagonal)]`
+    /// and `mixed` beside the diagonal.
+    fn along_border(&self, at: DVec2, step: DVec2, rows: [(f64, f64); 2], mixed: f64) -> DVec2 {
+        let domain = self.domain();
+        let mut step = step;
+        for k in 0..2 {
+            let (low, high) = domain[k];
+            let to = at[k] + step[k];
+            if !self.closed[k] && (to < low || to > high) {
+                step[k] = to.clamp(low, high) - at[k];
+                let (right, diagonal) = rows[1 - k];
+                let other = (right - mixed * step[k]) / diagonal;
+                if other.is_finite() {
+                    step[1 - k] = other;
+                }
+            }
+        }
+        step
+    }
+
+    /// Where Gauss's steps lead from a start, the distance there, and whether they end there.
+    fn newton(&self, p: DVec3, start: DVec2) -> (DVec2, f64, bool) {
         let domain = self.domain();
         let extent = DVec2::new(domain[0].1 - domain[0].0, domain[1].1 - domain[1].0);
         let mut best = (start, self.point(start).distance(p));
-        let mut last = f64::INFINITY;
         for _ in 0..STEPS {
             let [s, sv, su, _] = self.partials(best.0);
             let r = p - s;
@@ -215,19 +244,29 @@ impl Numeric {
             if !step.is_finite() {
                 break;
             }
-            let next = self.inside(best.0 + step);
-            let distance = self.point(next).distance(p);
-            // near the foot the distance no longer tells, and the step does
+            let mut step = self.along_border(best.0, step, [(f, a), (g, c)], b);
             let size = (step / extent).abs().max_element();
-            if distance > best.1 && (size >= last || distance > best.1 * (1.0 + 1e-9) + 1e-3 * self.tolerance) {
+            if size < CONVERGED {
+                return (best.0, best.1, true);
+            }
+            // near the foot the distance no longer tells, and the step does
+            let rounding = 1e-9 * best.1 + 1e-13 * p.abs().max_element();
+            let mut next = (self.inside(best.0 + step), 0.0);
+            next.1 = self.point(next.0).distance(p);
+            for _ in 0..HALVINGS {
+                if next.1 <= best.1 + rounding {
+                    break;
+                }
+                step *= 0.5;
+                next.0 = self.inside(best.0 + step);
+                next.1 = self.point(next.0).distance(p);
+            }
+            if next.1 > best.1 + rounding {
                 break;
             }
-            (best, last) = ((next, distance), size);
-            if size < 1e-16 {
-                break;
-            }
+            best = next;
         }
-        best
+        (best.0, best.1, false)
     }
 }
 

@@ -12,6 +12,12 @@ use super::carrier::Carrier;
 use super::chain::Ring;
 use super::trace::Piece;
 
+/// How far edges may go on beyond a seam of the file, as a share of the period: such ends are clamped.
+const OVERSHOOT: f64 = 1e-3;
+
+/// A ring of less area than this share of the largest beside it bounds nothing.
+const SLIVER: f64 = 1e-9;
+
 /// The rings of a face, closed in the plane, and the ranges of a whole period that its coordinates have where the surface was cut open.
 pub(super) struct Opened {
     pub(super) rings: Vec<Ring>,
@@ -49,7 +55,11 @@ pub(super) fn open(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -
         let (rings, range) = gathered(carrier, opened.rings, k, period);
         opened.rings = rings;
         let hair = carrier.hair(k);
-        if range.1 - range.0 > period + 4.0 * hair {
+        if let Some(seam) =
+            seam(carrier, &opened.rings, k, period).filter(|_| range.1 - range.0 <= (1.0 + OVERSHOOT) * period)
+        {
+            opened.full[k] = Some((seam, seam + period));
+        } else if range.1 - range.0 > period + 4.0 * hair {
             let at = cut_place(carrier, &opened.rings, k, period);
             opened.rings = cut(carrier, curves, opened.rings, k, at)?;
             opened.full[k] = Some((at, at + period));
@@ -58,6 +68,23 @@ pub(super) fn open(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -
         }
     }
     Ok(opened)
+}
+
+/// Where the file has cut the surface itself: the constant coordinate of edges that lie a period apart.
+fn seam(carrier: &Carrier, rings: &[Ring], k: usize, period: f64) -> Option<f64> {
+    let hair = carrier.hair(k);
+    let pieces = rings.iter().flat_map(|ring| &ring.pieces).filter(|piece| piece.edge.is_some());
+    let straight = pieces.filter_map(|piece| {
+        let (low, high) = extent(piece.at.iter().map(|at| at[k]));
+        (high - low <= hair).then_some(0.5 * (low + high))
+    });
+    let (low, high) = extent(straight);
+    (((high - low) - period).abs() <= 4.0 * hair).then_some(low)
+}
+
+/// The least and the largest.
+fn extent(values: impl Iterator<Item = f64>) -> (f64, f64) {
+    values.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), x| (low.min(x), high.max(x)))
 }
 
 /// A whole closed surface, with holes.
@@ -109,10 +136,7 @@ fn gathered(carrier: &Carrier, rings: Vec<Ring>, k: usize, period: f64) -> (Vec<
             ring.moved(by)
         })
         .collect();
-    let range = moved
-        .iter()
-        .map(|ring| ring.extent(k))
-        .fold((f64::INFINITY, f64::NEG_INFINITY), |a, b| (a.0.min(b.0), a.1.max(b.1)));
+    let range = extent(moved.iter().map(|ring| ring.extent(k)).flat_map(|(low, high)| [low, high]));
     (moved, range)
 }
 
@@ -125,7 +149,12 @@ fn cut_place(carrier: &Carrier, rings: &[Ring], k: usize, period: f64) -> f64 {
     let cost = |at: f64| {
         let all: usize = rings.iter().map(|ring| crossings(ring, k, at, period, hair)).sum();
         let holes = rings.iter().filter(|ring| ring.winding(carrier, k) == 0);
-        let holes: usize = holes.map(|ring| crossings(ring, k, at, period, hair)).sum();
+        // one that the cut touches would become a part of the outline
+        let touches = |ring: &Ring| {
+            let places = ring.pieces.iter().flat_map(|piece| &piece.at);
+            places.filter(|place| matches!(strip(place[k], at, period, hair), Strip::Line(_))).count()
+        };
+        let holes: usize = holes.map(|ring| crossings(ring, k, at, period, hair) + touches(ring)).sum();
         let split: usize =
             rings.iter().flat_map(|ring| &ring.pieces).map(|piece| splits(piece, k, at, period, hair)).sum();
         (holes, all, split)
@@ -208,7 +237,12 @@ fn cut(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>, k: usize, at:
             }
         }
     }
-    done.extend(link(carrier, arcs, k, at, period)?);
+    let linked = link(carrier, arcs, k, at, period)?;
+    // slivers that the rounding of the cut left
+    let largest = linked.iter().map(|ring| ring.area().abs()).fold(0.0, f64::max);
+    done.extend(
+        linked.into_iter().filter(|ring| ring.winding(carrier, 1 - k) != 0 || ring.area().abs() > SLIVER * largest),
+    );
     Ok(done)
 }
 

@@ -22,12 +22,14 @@ pub(super) struct Piece {
     pub(super) at: Vec<DVec2>,
     /// The poles where it begins and ends.
     pub(super) poles: [Option<usize>; 2],
+    /// How far its edge lies off the surface, at these places.
+    pub(super) off: f64,
 }
 
 impl Piece {
     /// The straight join of two places.
     pub(super) fn join(from: DVec2, to: DVec2) -> Self {
-        Self { edge: None, t: vec![0.0, 1.0], at: vec![from, to], poles: [None; 2] }
+        Self { edge: None, t: vec![0.0, 1.0], at: vec![from, to], poles: [None; 2], off: 0.0 }
     }
 
     pub(super) fn start(&self) -> DVec2 {
@@ -60,6 +62,7 @@ impl Piece {
             t: self.t[first..=last].to_vec(),
             at: self.at[first..=last].to_vec(),
             poles: [self.poles[0].filter(|_| first == 0), self.poles[1].filter(|_| last == end)],
+            off: self.off,
         }
     }
 
@@ -142,7 +145,7 @@ fn refine(carrier: &Carrier, curve: &NurbsCurve, a: Sample, b: Sample, depth: us
     }
     let step = carrier.beside(b.at, a.at) - a.at;
     let far = (0..2).any(|k| carrier.periods[k].is_some_and(|period| step[k].abs() > period / 7.0));
-    if !far || a.point.distance(b.point) <= carrier.tolerance {
+    if !far || a.point.distance(b.point) <= carrier.pole_tolerance {
         return;
     }
     let middle = Sample::new(carrier, curve, 0.5 * (a.t + b.t), Some(a.at));
@@ -161,13 +164,15 @@ fn pieces(carrier: &Carrier, curve: &NurbsCurve, edge: usize, samples: &[Sample]
             continue;
         }
         let end = (i..samples.len()).find(|k| samples[*k].pole.is_some()).unwrap_or(samples.len());
-        let mut piece = Piece { edge: Some(edge), t: Vec::new(), at: Vec::new(), poles: [None; 2] };
+        let mut piece = Piece { edge: Some(edge), t: Vec::new(), at: Vec::new(), poles: [None; 2], off: 0.0 };
         if i > 0 {
             let (t, at) = at_pole(carrier, curve, &samples[i - 1], &samples[i]);
             piece.t.push(t);
             piece.at.push(at);
             piece.poles[0] = samples[i - 1].pole;
         }
+        let off = samples[i..end].iter().map(|sample| carrier.point(sample.at).distance(sample.point));
+        piece.off = off.fold(0.0, f64::max);
         piece.t.extend(samples[i..end].iter().map(|sample| sample.t));
         for sample in &samples[i..end] {
             let at = piece.at.last().map_or(sample.at, |before| carrier.beside(sample.at, *before));
@@ -192,7 +197,7 @@ fn at_pole(carrier: &Carrier, curve: &NurbsCurve, pole: &Sample, before: &Sample
     for _ in 0..60 {
         let middle = 0.5 * (inner + outer);
         let from_pole = curve.point(middle).distance(pole.point);
-        if from_pole <= 8.0 * carrier.tolerance {
+        if from_pole <= 8.0 * carrier.pole_tolerance {
             inner = middle;
         } else {
             outer = middle;

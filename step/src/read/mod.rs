@@ -24,4 +24,5 @@ mod surface;
 mod tests;
 
 pub use error::ReadError;
+pub(crate) use guard::read_bytes;
 pub use guard::{ReadOptions, read, read_file};

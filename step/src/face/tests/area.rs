@@ -15,7 +15,8 @@ const NODES: [(f64, f64); 5] = [
 
 /// The area of what closed loops bound.
 pub(crate) fn area(surface: &NurbsSurface, loops: &[Vec<PlaneCurve>]) -> f64 {
-    let polygons: Vec<Vec<DVec2>> = loops.iter().map(|one| one.iter().flat_map(polyline).collect()).collect();
+    let mut polygons: Vec<Vec<DVec2>> = loops.iter().map(|one| one.iter().flat_map(polyline).collect()).collect();
+    polygons.iter_mut().for_each(Vec::dedup);
     let mut stops: Vec<f64> = loops.iter().flatten().flat_map(|curve| [curve.start().x, curve.end().x]).collect();
     // extremes of bent curves too
     stops.extend(polygons.iter().flat_map(|polygon| {
@@ -31,8 +32,11 @@ pub(crate) fn area(surface: &NurbsSurface, loops: &[Vec<PlaneCurve>]) -> f64 {
         }
         for part in 0..6 {
             for (node, weight) in NODES {
-                let u = pair[0] + width * (f64::from(part) + node) / 6.0;
-                sum += weight * width / 6.0 * length(surface, &polygons, u);
+                let s = (f64::from(part) + node) / 6.0;
+                // slow at the ends, where lengths may grow as square roots do
+                let u = pair[0] + width * s * s * (3.0 - 2.0 * s);
+                let pace = 6.0 * s * (1.0 - s);
+                sum += weight / 6.0 * pace * width * length(surface, &polygons, u);
             }
         }
     }
@@ -40,8 +44,8 @@ pub(crate) fn area(surface: &NurbsSurface, loops: &[Vec<PlaneCurve>]) -> f64 {
 }
 
 fn polyline(curve: &PlaneCurve) -> Vec<DVec2> {
-    let steps = if curve.degree() == 1 { 1 } else { 48 };
     let spans: Vec<_> = curve.knots().spans().collect();
+    let steps = if curve.degree() == 1 { 1 } else { (800 / spans.len() as u32).max(24) };
     spans
         .into_iter()
         .flat_map(|span| {

@@ -140,6 +140,9 @@ fn part(file: &Path) -> Part {
     let json: Value = serde_json::from_str(&text).expect("the corpus is JSON");
     let all = json["entities"].as_array().expect("entities");
     let is = |kind: &'static str| all.iter().filter(move |one| one["kind"] == kind);
+    if is("surface").all(|one| one["trims"].is_null()) {
+        return (Vec::new(), Vec::new());
+    }
     let edges: Vec<SourceEdge> = is("curve").map(edge).collect();
     let index: HashMap<u64, usize> = edges.iter().enumerate().map(|(i, edge)| (edge.entity, i)).collect();
     let faces = is("surface").filter(|one| !one["trims"].is_null()).map(|one| face(one, &edges, &index)).collect();
@@ -260,8 +263,12 @@ fn complaint(built: &BuiltFace, expected: &Expected, curves: &[NurbsCurve]) -> O
                 Side::Outside => false,
                 Side::Boundary => continue,
             };
-            let of_loops = built.loops.iter().flat_map(|one| &one.curves).filter_map(|(_, edge)| *edge);
-            if of_loops.map(|edge| distance(&curves[edge], p)).fold(f64::INFINITY, f64::min) < 1e-3 * size {
+            let mut of_loops = built.loops.iter().flat_map(|one| &one.curves).filter_map(|(_, edge)| *edge);
+            let is_near = |edge: usize| {
+                let curve = &curves[edge];
+                coarse_distance(curve, p) < 0.05 * size && distance(curve, p) < 1e-3 * size
+            };
+            if of_loops.any(is_near) {
                 continue;
             }
             let query = Query::new(p, Default::default()).expect("a query");
@@ -288,16 +295,24 @@ fn complaint(built: &BuiltFace, expected: &Expected, curves: &[NurbsCurve]) -> O
                 ));
             }
             let sign = |reversed: bool| if reversed { -1.0 } else { 1.0 };
-            let mine = sign(built.reversed) * built.surface.normal(at.x, at.y);
-            let theirs = sign(expected.trimming.reversed()) * expected.surface.normal(uv.x, uv.y);
+            let mine = sign(built.reversed) * built.surface.normal(at.x, at.y).normalize_or_zero();
+            let theirs = sign(expected.trimming.reversed()) * expected.surface.normal(uv.x, uv.y).normalize_or_zero();
             if is_inside && mine.dot(theirs) < 0.9 {
-                return Some("the outward normal is another".to_owned());
+                return Some(format!("the outward normal is another: {}", mine.dot(theirs)));
             }
         }
     }
     let found = area(&built.surface, &loops);
-    if (found - expected.area).abs() > 1e-3 * expected.area {
-        return Some(format!("area {found}, {} expected ({inside} of {seen} points inside)", expected.area));
+    let theirs: Vec<Vec<PlaneCurve>> = expected
+        .trimming
+        .loops()
+        .iter()
+        .map(|one| one.curves.iter().map(|curve| curve.curve.clone()).collect())
+        .collect();
+    // the other kernel integrates less well than it trims: its number, or what its trims give here
+    let areas = [expected.area, area(&expected.surface, &theirs)];
+    if areas.iter().all(|area| (found - area).abs() > 1e-3 * area) {
+        return Some(format!("area {found}, {areas:?} expected ({inside} of {seen} points inside)"));
     }
     for (one, data) in loops.iter().zip(&built.loops) {
         let signed: f64 = one
@@ -315,6 +330,12 @@ fn complaint(built: &BuiltFace, expected: &Expected, curves: &[NurbsCurve]) -> O
         }
     }
     None
+}
+
+/// The distance of a point from the nearest of some points of a curve.
+fn coarse_distance(curve: &NurbsCurve, p: DVec3) -> f64 {
+    let ((a, b), count) = (curve.domain(), curve.knots().spans().count() * 8);
+    (0..=count).map(|k| curve.point(a + (b - a) * k as f64 / count as f64).distance(p)).fold(f64::INFINITY, f64::min)
 }
 
 /// The distance of a point from a curve, within some 1e-12 of its size.
@@ -356,7 +377,7 @@ fn faces_of_real_models_are_those_of_another_kernel() {
         let tolerance = 1e-6;
         let start = std::time::Instant::now();
         let made: Vec<_> = edges.iter().map(|edge| edge_curve(edge, tolerance)).collect();
-        let built: Vec<_> = faces.iter().map(|(face, _)| build(face, &made, tolerance)).collect();
+        let built: Vec<_> = faces.iter().map(|(face, _)| build(face, &edges, &made, tolerance)).collect();
         let time = start.elapsed();
         let curves: Vec<NurbsCurve> = edges.iter().map(nurbs_of).collect();
         let before = lost.len();

@@ -2,3 +2,4 @@
 
 mod area;
 mod corpus;
+mod oddities;
