@@ -2,8 +2,8 @@
 
 use perpend::glam::DVec2;
 use perpend::{
-    Carrier, Circle, DVec3, EntityId, Frame, Line, Model, NurbsCurve, NurbsSurface, Plane, Shell,
-    TrimCurveData, TrimLoopData, TrimmedSurface, TrimmingData,
+    Carrier, Circle, DVec3, EntityId, Frame, Line, Model, NurbsCurve, NurbsSurface, Plane, Shell, TrimCurveData,
+    TrimLoopData, TrimmedSurface, TrimmingData,
 };
 
 use super::Outcome;

@@ -118,9 +118,8 @@ fn shown<'a>(model: &'a Model, entity: Option<EntityId>, survey: &Survey) -> Vec
     let carriers = model.entities().iter().filter_map(Entity::carrier);
     let edges = model.entities().iter().filter_map(Entity::trimming).flat_map(|trimming| trimming.edges());
     let parts: HashSet<EntityId> = carriers.chain(edges).collect();
-    let is_shown = |id: EntityId| {
-        survey.of_entity.contains_key(&id) || entity.map_or(!parts.contains(&id), |entity| entity == id)
-    };
+    let is_shown =
+        |id: EntityId| survey.of_entity.contains_key(&id) || entity.map_or(!parts.contains(&id), |entity| entity == id);
     model.entities().iter().filter(|entity| is_shown(entity.id())).collect()
 }
 
