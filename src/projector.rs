@@ -1,6 +1,7 @@
 //! Queries to one entity by one thread.
 
 use glam::DVec3;
+use perpend_kernel::EntityId;
 use perpend_projection::{FootPoint, Prepared, Query, QueryError, QueryOptions, Scratch, Statistics, Ties};
 
 /// An entity made ready, with working memory and the last foot: for loops that ask one entity many times, best with each
@@ -9,6 +10,7 @@ use perpend_projection::{FootPoint, Prepared, Query, QueryError, QueryOptions, S
 /// The answers are those of [`Model::project_with`](crate::Model::project_with), bit for bit.
 #[derive(Debug)]
 pub struct Projector<'a> {
+    id: EntityId,
     prepared: &'a Prepared,
     scratch: Scratch,
     /// The last foot: it spares the next query the pieces that are farther away.
@@ -16,8 +18,8 @@ pub struct Projector<'a> {
 }
 
 impl<'a> Projector<'a> {
-    pub(crate) fn new(prepared: &'a Prepared) -> Self {
-        Self { prepared, scratch: Scratch::default(), hint: None }
+    pub(crate) fn new(id: EntityId, prepared: &'a Prepared) -> Self {
+        Self { id, prepared, scratch: Scratch::default(), hint: None }
     }
 
     /// The nearest point to `p`; none where the entity is beyond `max_distance`.
@@ -36,8 +38,11 @@ impl<'a> Projector<'a> {
     ///
     /// # Errors
     ///
-    /// As [`project`](Self::project).
+    /// As [`project`](Self::project); a trimmed face, of which this is not available.
     pub fn project_ties(&mut self, p: DVec3, options: &QueryOptions) -> Result<Option<Ties>, QueryError> {
+        if self.prepared.trimming().is_some() {
+            return Err(QueryError::TrimmedFace { id: self.id, what: "all nearest points" });
+        }
         Ok(self.prepared.project_ties(&Query::new(p, *options)?, &mut self.scratch))
     }
 

@@ -52,7 +52,7 @@ impl Model {
         };
         batch::answers(
             ps,
-            || Projector::new(prepared),
+            || Projector::new(id, prepared),
             |projector, index, p| projector.project(*p, options).map_err(|error| at_index(error, index)),
         )
     }
@@ -61,9 +61,9 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// As [`project_with`](Self::project_with).
+    /// As [`project_with`](Self::project_with); a trimmed face, of which this is not available.
     pub fn project_ties(&self, id: EntityId, p: DVec3, options: &QueryOptions) -> Result<Option<Ties>, QueryError> {
-        let prepared = self.prepared(id)?;
+        let prepared = self.untrimmed(id, "all nearest points")?;
         Ok(prepared.project_ties(&Query::new(p, *options)?, &mut Scratch::default()))
     }
 
@@ -82,14 +82,15 @@ impl Model {
     ///
     /// # Errors
     ///
-    /// An unknown id; a coordinate that is no finite number or beyond 1e75; a tolerance that is negative or not a number.
+    /// An unknown id; a trimmed face, of which this is not available; a coordinate that is no finite number or beyond 1e75; a tolerance
+    /// that is negative or not a number.
     pub fn stationary_points(
         &self,
         id: EntityId,
         p: DVec3,
         options: &StationaryOptions,
     ) -> Result<StationaryPoints, QueryError> {
-        self.prepared(id)?.stationary_points(p, options, &mut Scratch::default())
+        self.untrimmed(id, "stationary points")?.stationary_points(p, options, &mut Scratch::default())
     }
 
     /// An entity made ready for many queries by one thread, with the working memory that they reuse.
@@ -98,7 +99,13 @@ impl Model {
     ///
     /// An unknown id.
     pub fn projector(&self, id: EntityId) -> Result<Projector<'_>, QueryError> {
-        Ok(Projector::new(self.prepared(id)?))
+        Ok(Projector::new(id, self.prepared(id)?))
+    }
+
+    /// A query that is not answered of trimmed faces.
+    fn untrimmed(&self, id: EntityId, what: &'static str) -> Result<&Prepared, QueryError> {
+        let prepared = self.prepared(id)?;
+        if prepared.trimming().is_some() { Err(QueryError::TrimmedFace { id, what }) } else { Ok(prepared) }
     }
 
     fn prepared(&self, id: EntityId) -> Result<&Prepared, QueryError> {

@@ -3,7 +3,7 @@
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
-use clap::{Args, Parser, Subcommand, value_parser};
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use perpend::{DVec3, EntityId, Method, Model, ReadError, Trust};
 
 use crate::names;
@@ -52,6 +52,8 @@ pub(crate) enum Command {
     Stationary(StationaryArguments),
     /// Make a page that shows a model and how far points lie from it
     Report(ReportArguments),
+    /// Write a model for other programs: STEP, triangles (OBJ, STL), or what is known as JSON
+    Export(ExportArguments),
 }
 
 /// What happens to knowledge of the model that is false.
@@ -272,6 +274,56 @@ pub(crate) struct StationaryArguments {
     #[command(flatten)]
     pub(crate) trust: TrustArguments,
 }
+
+/// Write a model for other programs: as a STEP file, as triangles, or what is known of its entities as JSON.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES, after_long_help = ABOUT_FORMATS)]
+pub(crate) struct ExportArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// The file, written whole or not at all; `-` is standard output
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// The format; without it, the one that OUT's ending names
+    #[arg(long, value_enum)]
+    pub(crate) format: Option<Format>,
+    /// Write this entity or body alone
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// OBJ and STL: how far triangles and polylines may be from the shapes, in the model's unit; without it, 1e-3 times the model's size
+    #[arg(long, value_name = "E", value_parser = above_zero, allow_negative_numbers = true)]
+    pub(crate) chord: Option<f64>,
+    /// STL: write text
+    #[arg(long)]
+    pub(crate) ascii: bool,
+}
+
+/// A format that models are exported in.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, ValueEnum)]
+pub(crate) enum Format {
+    Step,
+    Obj,
+    Stl,
+    Json,
+}
+
+const ABOUT_FORMATS: &str = "\
+Formats, by the ending of OUT:
+  .step .stp  STEP, AP214: bodies, faces with their edges, free curves, names, colours, the unit. Planes,
+              cylinders, cones, spheres and tori that are known and proved are written as such
+              (`perpend learn` acquires what is not known), everything else as B-splines
+  .obj        triangles of faces and polylines of free curves, an object each, with normals
+  .stl        triangles alone, binary (single precision) or with --ascii
+  .json       what `perpend show --json` writes
+
+Every point of a triangle or a polyline is proven to be within the chord error of its shape.
+
+Example:
+  perpend export bracket.ron -o bracket.stl --chord 0.05
+
+Exit codes: 0 done; 1 an input is wrong (standard error says what, where and how to mend it); 2 wrong usage.";
 
 /// Project points: the nearest point of an entity, or of the whole model, to each.
 ///

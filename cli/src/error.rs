@@ -39,6 +39,14 @@ pub(crate) enum CommandError {
     OutputIsModel { path: PathBuf },
     #[error("{} is an input; it would be lost: give another file to -o", path.display())]
     OutputIsInput { path: PathBuf },
+    #[error("{}: no ending that names a format: name it .step, .stp, .obj, .stl or .json, or give --format", path.display())]
+    UnknownFormat { path: PathBuf },
+    #[error("{option} means nothing to {format}: leave it out")]
+    IdleOption { option: &'static str, format: &'static str },
+    #[error("{}: {what}, and {format} holds {holds}: nothing to write", model.display())]
+    NothingToWrite { model: PathBuf, what: String, format: &'static str, holds: &'static str },
+    #[error("{}: entity {id}: {limit} are too few for the chord error {chord:?}: --chord {reached:?} would do", model.display())]
+    ChordTooSmall { model: PathBuf, id: EntityId, limit: String, chord: f64, reached: f64 },
 }
 
 impl CommandError {
@@ -49,7 +57,11 @@ impl CommandError {
 
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
-            Self::TwoEntities { .. } | Self::OutputIsModel { .. } | Self::OutputIsInput { .. } => ExitCode::from(2),
+            Self::TwoEntities { .. }
+            | Self::OutputIsModel { .. }
+            | Self::OutputIsInput { .. }
+            | Self::UnknownFormat { .. }
+            | Self::IdleOption { .. } => ExitCode::from(2),
             _ => ExitCode::FAILURE,
         }
     }

@@ -5,6 +5,7 @@ mod check;
 mod deviation_report;
 mod error;
 mod explain;
+mod export;
 mod impact;
 mod import;
 mod learn;
@@ -40,6 +41,7 @@ fn main() -> ExitCode {
         Command::Project(arguments) => project::run(&arguments),
         Command::Stationary(arguments) => stationary::run(&arguments),
         Command::Report(arguments) => deviation_report::run(&arguments),
+        Command::Export(arguments) => export::run(&arguments),
     };
     match done {
         Ok(code) => code,

@@ -125,6 +125,22 @@ pub enum QueryError {
         /// The id that was asked for.
         id: perpend_kernel::EntityId,
     },
+    /// No body of the model has this id.
+    #[error("the model has no body {id}; its bodies are listed by `perpend show`")]
+    UnknownBody {
+        /// The id that was asked for.
+        id: perpend_kernel::EntityId,
+    },
+    /// The entity is a trimmed face, of which this is not answered.
+    #[error(
+        "entity {id} is a trimmed face, of which {what} are not available: ask its nearest point, or those of its surface"
+    )]
+    TrimmedFace {
+        /// The face.
+        id: perpend_kernel::EntityId,
+        /// What was asked for.
+        what: &'static str,
+    },
     /// A coordinate of the query point is infinite, not a number, or beyond 1e75.
     #[error("query point {index} is ({x:?}, {y:?}, {z:?}); coordinates are finite and within ±1e75")]
     InvalidPoint {

@@ -5,7 +5,7 @@ use perpend_kernel::bezier::curve_pieces;
 use perpend_kernel::{NurbsCurve, cartesian};
 
 use crate::patch::{halves, middle};
-use crate::refine::{Part, refine};
+use crate::refine::{Part, inner_share, refine};
 use crate::tessellate::{InvalidChord, Limits};
 
 /// A polyline of a curve.
@@ -46,11 +46,13 @@ struct Arc {
 }
 
 impl Part for Arc {
-    /// Curve and chord are the same convex combinations, of the control points and of the points of the chord nearest to them.
+    /// Curve and chord are the same convex combinations, of the control points and of the points of the chord nearest to them; the ends are
+    /// on the chord.
     fn error(&self) -> f64 {
         let places: Vec<DVec3> = self.points.iter().map(|point| cartesian(*point)).collect();
         let (from, to) = (places[0], places[places.len() - 1]);
-        places.iter().map(|place| distance_to_segment(*place, from, to)).fold(0.0, f64::max)
+        let farthest = places.iter().map(|place| distance_to_segment(*place, from, to)).fold(0.0, f64::max);
+        inner_share(&self.points) * farthest
     }
 
     fn split(&self) -> Option<[Self; 2]> {

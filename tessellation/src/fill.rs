@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use perpend_kernel::NurbsSurface;
 use spade::{ConstrainedDelaunayTriangulation, HasPosition, Point2, Triangulation};
 
+use crate::apart::apart;
 use crate::cells::Cell;
 use crate::grid::Grid;
 use crate::parity::Parity;
@@ -62,25 +63,19 @@ impl Fill<'_> {
     /// A constrained triangulation of the cell's places; the triangles that count are on the inner side of the trims.
     fn trimmed(&mut self, cell: &Cell, outline: &[u32]) {
         let frame = CellFrame::new(cell);
+        let corner = |index: u32| Corner { at: frame.enter(self.grid.place(index)), index: Some(index) };
+        let segments = cell.segments.iter().map(|segment| segment.map(corner)).collect();
+        let segments = apart(segments);
         let mut mesh = ConstrainedDelaunayTriangulation::<Corner>::new();
-        let enter = |mesh: &mut ConstrainedDelaunayTriangulation<Corner>, index: u32| {
-            let at = frame.enter(self.grid.place(index));
-            mesh.insert(Corner { at, index: Some(index) }).expect("coordinates in a cell are of moderate size")
-        };
+        let mut enter = |corner: Corner| mesh.insert(corner).expect("coordinates in a cell are of moderate size");
         // the sides last: where two places are one in the frame, the one that the cell beside knows stays
-        let segments: Vec<_> = cell.segments.iter().map(|s| s.map(|index| enter(&mut mesh, index))).collect();
-        let sides: Vec<_> = outline.iter().map(|index| enter(&mut mesh, *index)).collect();
+        let segments: Vec<_> = segments.into_iter().map(|segment| segment.map(&mut enter)).collect();
+        let sides: Vec<_> = outline.iter().map(|index| enter(corner(*index))).collect();
         for (i, from) in sides.iter().enumerate() {
             mesh.try_add_constraint(*from, sides[(i + 1) % sides.len()]);
         }
-        // trims that cross, as two may that nearly touch, are split where they do, unless they are so many that it is no accident
-        let most = mesh.num_vertices() * 4 + 64;
         for [from, to] in segments {
-            if mesh.num_vertices() < most {
-                mesh.add_constraint_and_split(from, to, |at| Corner { at, index: None });
-            } else {
-                mesh.try_add_constraint(from, to);
-            }
+            mesh.try_add_constraint(from, to);
         }
         let indices: Vec<u32> = mesh
             .vertices()
@@ -101,9 +96,9 @@ impl Fill<'_> {
 
 /// A place in the frame of a cell; those that splitting made have no index yet.
 #[derive(Debug, Clone, Copy)]
-struct Corner {
-    at: Point2<f64>,
-    index: Option<u32>,
+pub(crate) struct Corner {
+    pub(crate) at: Point2<f64>,
+    pub(crate) index: Option<u32>,
 }
 
 impl HasPosition for Corner {

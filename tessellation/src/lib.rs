@@ -21,13 +21,15 @@
 //! # The bound of a trim
 //!
 //! A piece of a trim with control points `P_i` and the chord between its ends are apart by at most `max |P_i - x_i|`, `x_i` being any
-//! points of the chord: both are the same convex combinations of them. In space that is at most `|S_u| du + |S_v| dv`. What
-//! lies between piece and chord is swept by the segments between corresponding points, so it is as near. Each trim is given one
+//! points of the chord: both are the same convex combinations of them (and the ends agree, so that only the share of the inner points
+//! counts). In space that is at most `|S_u| du + |S_v| dv`. What lies between piece and chord is swept by the segments between corresponding
+//! points, so it is as near. Each trim is given one
 //! half of the chord error, and the cells the other; the polyline in space is then within the chord error of the exact trim, also seen
 //! from the face beside it.
 //!
 //! Both bounds leave out the rounding of evaluation, a few ulps of the largest coordinate.
 
+mod apart;
 mod bound;
 mod cells;
 mod curve;

@@ -5,7 +5,7 @@ use perpend_kernel::cartesian;
 
 use crate::bound::Derivatives;
 use crate::patch::{Patch, halves};
-use crate::refine::{Part, refine};
+use crate::refine::{Part, inner_share, refine};
 
 /// Bounds of the lengths of the first derivatives of a surface, piece by piece.
 #[derive(Debug)]
@@ -138,7 +138,7 @@ impl Part for TrimPart<'_> {
             let share = if length_squared > 0.0 { share.clamp(0.0, 1.0) } else { 0.0 };
             speed.dot((*place - (from + share * (to - from))).abs())
         });
-        error.fold(0.0, f64::max)
+        inner_share(&self.points) * error.fold(0.0, f64::max)
     }
 
     fn split(&self) -> Option<[Self; 2]> {

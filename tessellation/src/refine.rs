@@ -3,12 +3,26 @@
 use std::cmp::Ordering;
 use std::collections::BinaryHeap;
 
+use glam::DVec4;
+
 /// A part of a curve that can be split.
 pub(crate) trait Part: Sized {
     /// The proven error of standing for it by its chord.
     fn error(&self) -> f64;
     /// Both halves; none where it is too short to have some.
     fn split(&self) -> Option<[Self; 2]>;
+}
+
+/// The largest share that the inner control points of a rational Bézier curve have in a point of it.
+///
+/// With `b` the sum of the first and the last Bernstein polynomial, at least `2^(1 - degree)`, it is at most
+/// `inner (1 - b) / (inner (1 - b) + outer b)` for the largest inner and the smallest outer weight.
+pub(crate) fn inner_share(points: &[DVec4]) -> f64 {
+    let degree = points.len() - 1;
+    let outer = points[0].w.min(points[degree].w);
+    let inner = points[1..degree].iter().map(|point| point.w).fold(0.0, f64::max);
+    let b = 0.5_f64.powi(degree as i32 - 1);
+    inner * (1.0 - b) / (inner * (1.0 - b) + outer * b)
 }
 
 /// Parts that are fine enough, in no order, and the largest error of one.

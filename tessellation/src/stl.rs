@@ -33,16 +33,16 @@ pub fn binary(mut out: impl Write, meshes: &[&Mesh]) -> io::Result<()> {
     Ok(())
 }
 
-/// Writes meshes as STL text, each a solid of its name; coordinates read back bit for bit.
+/// Writes named solids, of any number of meshes each, as STL text; coordinates read back bit for bit.
 ///
 /// # Errors
 ///
 /// Those of the writer.
-pub fn ascii(mut out: impl Write, meshes: &[(&str, &Mesh)]) -> io::Result<()> {
-    for (name, mesh) in meshes {
+pub fn ascii(mut out: impl Write, solids: &[(&str, &[&Mesh])]) -> io::Result<()> {
+    for (name, meshes) in solids {
         let name: String = name.chars().map(|letter| if letter.is_control() { ' ' } else { letter }).collect();
         writeln!(out, "solid {name}")?;
-        for corners in mesh.corners() {
+        for corners in meshes.iter().flat_map(|mesh| mesh.corners()) {
             let DVec3 { x, y, z } = facet_normal(corners);
             writeln!(out, "facet normal {x:e} {y:e} {z:e}\n outer loop")?;
             for DVec3 { x, y, z } in corners {
@@ -89,7 +89,7 @@ mod tests {
     #[test]
     fn text_names_its_solids_and_keeps_every_bit() {
         let mut text = Vec::new();
-        ascii(&mut text, &[("lid", &corner())]).unwrap();
+        ascii(&mut text, &[("lid", &[&corner()])]).unwrap();
         let text = String::from_utf8(text).unwrap();
         assert!(text.starts_with("solid lid\nfacet normal 0e0 0e0 1e0\n outer loop\n  vertex 0e0 0e0 0e0\n"), "{text}");
         assert!(text.contains("vertex 0e0 1e-1 0e0\n") && text.ends_with("endsolid lid\n"), "{text}");

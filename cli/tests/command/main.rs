@@ -4,6 +4,7 @@ mod bad_models;
 mod bad_points;
 mod check_and_show;
 mod explain;
+mod export;
 mod intent;
 mod learn;
 mod output;

@@ -11,7 +11,7 @@ use perpend::{Frame, NurbsSurface};
 
 use super::FaceError;
 use super::numeric::Numeric;
-use crate::source::SourceSurface;
+use crate::source::{SourceCurve, SourceSurface};
 
 /// A surface and what is known of its coordinates.
 #[derive(Debug)]
@@ -50,7 +50,7 @@ pub(super) enum Form {
     Cone { frame: Frame, radius: f64, half_angle: f64 },
     Sphere { frame: Frame, radius: f64 },
     Torus { frame: Frame, major: f64, minor: f64 },
-    Numeric(Numeric),
+    Numeric(Box<Numeric>),
 }
 
 const NO_LIMIT: (f64, f64) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -68,6 +68,9 @@ impl Carrier {
             tolerance,
             pole_tolerance: tolerance,
         };
+        let positive = |what: &'static str, value: f64| {
+            if value > 0.0 && value.is_finite() { Ok(()) } else { Err(FaceError::Length { what, value }) }
+        };
         let frame = |frame: &Frame| Frame::new(frame.centre, frame.axis, frame.xdir);
         Ok(match surface {
             SourceSurface::Plane(given) => {
@@ -76,12 +79,16 @@ impl Carrier {
                 Self { normal_kept: true, ..carrier }
             }
             SourceSurface::Cylinder { frame: given, radius } => {
+                positive("radius", *radius)?;
                 let form = Form::Cylinder { frame: frame(given)?, radius: *radius };
                 let scale = DVec2::new(1.0, *radius);
                 analytic(form, [None, Some(TAU)], [NO_LIMIT; 2], Vec::new(), scale)
             }
             SourceSurface::Cone { frame: given, radius, half_angle } => {
                 let frame = frame(given)?;
+                if !(radius.is_finite() && *radius >= 0.0) {
+                    return Err(FaceError::Length { what: "radius", value: *radius });
+                }
                 if !(half_angle.abs() > 1e-9 && half_angle.abs() < FRAC_PI_2 - 1e-9) {
                     return Err(FaceError::HalfAngle(*half_angle));
                 }
@@ -94,6 +101,7 @@ impl Carrier {
                 analytic(form, [None, Some(TAU)], [limit, NO_LIMIT], vec![pole], scale)
             }
             SourceSurface::Sphere { frame: given, radius } => {
+                positive("radius", *radius)?;
                 let frame = frame(given)?;
                 let pole = |sign: f64| Pole {
                     across: 0,
@@ -106,8 +114,14 @@ impl Carrier {
                 analytic(form, [None, Some(TAU)], limits, poles, DVec2::splat(*radius))
             }
             SourceSurface::Torus { frame: given, major, minor } => {
+                positive("major radius", *major)?;
+                positive("minor radius", *minor)?;
                 if minor > major {
-                    return Err(FaceError::SpindleTorus { major: *major, minor: *minor });
+                    let frame = frame(given)?;
+                    let tube = Frame::new(frame.centre + *major * frame.xdir, -frame.ydir(), frame.xdir)?;
+                    let profile = SourceCurve::Circle { frame: tube, radius: *minor };
+                    let numeric = Numeric::revolution(&profile, frame.centre, frame.axis, points, tolerance)?;
+                    return Ok(Self::numeric(numeric, false, tolerance));
                 }
                 let form = Form::Torus { frame: frame(given)?, major: *major, minor: *minor };
                 let scale = DVec2::new(*minor, major + minor);
@@ -131,7 +145,7 @@ impl Carrier {
         let limits = [0, 1].map(|k| if numeric.closed[k] { NO_LIMIT } else { domain[k] });
         let (poles, scale) = (numeric.poles(), numeric.scale());
         Self {
-            form: Form::Numeric(numeric),
+            form: Form::Numeric(Box::new(numeric)),
             periods,
             limits,
             poles,

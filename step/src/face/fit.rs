@@ -12,6 +12,9 @@ use super::window::Window;
 /// How often a part of a piece is halved at most.
 const DEPTH: u32 = 14;
 
+/// A p-curve has no more cubics than about this.
+const MOST: usize = 2048;
+
 /// A step for a difference quotient, as a share of the part that it is taken on.
 const STEP: f64 = 1e-3;
 
@@ -214,7 +217,7 @@ impl Fit<'_> {
             let surface = &self.window.surface;
             surface.point(found.x, found.y).distance(surface.point(wanted.x, wanted.y)) <= tolerance
         };
-        if depth == DEPTH || [0.5, 0.25, 0.75, 0.1, 0.9].into_iter().all(is_near) {
+        if depth == DEPTH || out.len() > MOST || [0.5, 0.25, 0.75, 0.1, 0.9].into_iter().all(is_near) {
             out.push(cubic);
             return;
         }

@@ -66,10 +66,12 @@ pub(crate) struct BuiltLoop {
 pub(crate) enum FaceError {
     #[error("edge #{entity}: {reason}")]
     Edge { entity: u64, reason: String },
+    #[error("its {what} is {value}; it must be positive and finite")]
+    Length { what: &'static str, value: f64 },
+    #[error("an edge has no place on its surface")]
+    Nowhere,
     #[error("the cone's half-angle is {0}; it must lie strictly between 0 and a right angle")]
     HalfAngle(f64),
-    #[error("the torus' minor radius, {minor}, is above its major one, {major}: it intersects itself")]
-    SpindleTorus { major: f64, minor: f64 },
     #[error("the profile is a hyperbola or a parabola without ends")]
     UnboundedProfile,
     #[error("its loops bound no part of its surface")]
@@ -141,6 +143,9 @@ pub(crate) fn build(
         if pieces.is_empty() {
             continue;
         }
+        if !pieces.iter().flat_map(|piece| &piece.at).all(|at| at.is_finite()) {
+            return Err(FaceError::Nowhere);
+        }
         let ring = chain::ring(&carrier, pieces, left);
         rings.push(if left > 0.0 { ring } else { ring.reversed() });
     }
@@ -204,9 +209,11 @@ fn whole_domain(carrier: &Carrier) -> Vec<trace::Piece> {
 fn nested(rings: Vec<Ring>) -> Vec<(Ring, bool)> {
     let polygons: Vec<Vec<DVec2>> =
         rings.iter().map(|ring| ring.pieces.iter().flat_map(|piece| piece.at.iter().copied()).collect()).collect();
+    let boxes: Vec<[(f64, f64); 2]> = rings.iter().map(|ring| [0, 1].map(|k| ring.extent(k))).collect();
+    let meets = |i: usize, j: usize| (0..2).all(|k| boxes[i][k].0 <= boxes[j][k].1 && boxes[j][k].0 <= boxes[i][k].1);
     let is_outer: Vec<bool> = (0..rings.len())
         .map(|i| {
-            let around = (0..rings.len()).filter(|j| *j != i && is_within(&polygons[i], &polygons[*j]));
+            let around = (0..rings.len()).filter(|j| *j != i && meets(i, *j) && is_within(&polygons[i], &polygons[*j]));
             around.count() % 2 == 0
         })
         .collect();

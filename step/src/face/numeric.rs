@@ -6,8 +6,8 @@ use std::sync::{Arc, OnceLock};
 use glam::{DVec2, DVec3};
 use perpend::kernel::{InvalidEdit, extrusion, revolution};
 use perpend::{
-    Circle, Definition, Direction, Ellipse, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface, Prepared,
-    Query, Scratch,
+    Circle, Definition, Direction, Ellipse, Frame, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface,
+    Prepared, Query, Scratch,
 };
 
 use super::FaceError;
@@ -51,6 +51,11 @@ impl Numeric {
         points: &[DVec3],
         tolerance: f64,
     ) -> Result<Self, FaceError> {
+        if let SourceCurve::Circle { frame, radius } = profile
+            && let Some(shell) = Self::spindle((frame, *radius), centre, axis, points, tolerance)?
+        {
+            return Ok(shell);
+        }
         let unit = axis.normalize_or_zero();
         // a point of the profile has the distance from the axis and the height of a point of the surface
         let polar = |p: DVec3| {
@@ -85,6 +90,45 @@ impl Numeric {
         let profile = profile_curve(profile, extent)?;
         let surface = revolution(&profile, centre, axis, TAU)?;
         Ok(Self { cropped: true, ..Self::new(surface, tolerance) })
+    }
+
+    /// A circle turned about an axis that it crosses: one of the two shells, the one on which the points lie.
+    ///
+    /// None where the circle does not cross the axis, or does not lie in a plane with it.
+    pub(super) fn spindle(
+        circle: (&Frame, f64),
+        centre: DVec3,
+        axis: DVec3,
+        points: &[DVec3],
+        tolerance: f64,
+    ) -> Result<Option<Self>, FaceError> {
+        let ((frame, radius), unit) = (circle, axis.normalize_or_zero());
+        let arm = frame.centre - centre;
+        // the direction away from the axis in the circle's plane, and the circle's centre along it
+        let out = unit.cross(frame.axis);
+        let (along, beside) = (arm.dot(out), arm.dot(frame.axis));
+        if unit.dot(frame.axis).abs() > 1e-9 || beside.abs() > tolerance || along.abs() >= radius - tolerance {
+            return Ok(None);
+        }
+        let outermost = out.dot(frame.ydir()).atan2(out.dot(frame.xdir));
+        let meets = (-along / radius).acos();
+        let middle = arm.dot(unit);
+        let off = |along: f64| -> f64 {
+            let one = |p: &DVec3| {
+                let height = (*p - centre).dot(unit);
+                let distance = (*p - centre - height * unit).length();
+                ((distance - along).hypot(height - middle) - radius).abs()
+            };
+            points.iter().map(one).sum()
+        };
+        let sweep = if off(along) <= off(-along) {
+            (outermost - meets, outermost + meets)
+        } else {
+            (outermost + meets, outermost + TAU - meets)
+        };
+        let profile = Circle::new(*frame, radius, sweep)?.to_nurbs()?;
+        let surface = revolution(&profile, centre, axis, TAU)?;
+        Ok(Some(Self { cropped: true, ..Self::new(surface, tolerance) }))
     }
 
     /// The profile (u) moved along the direction (v), as far as the face's points reach.

@@ -34,10 +34,10 @@ pub(super) fn open(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -
     let unbounded_by_rings =
         !winds(&opened.rings, 0) && !winds(&opened.rings, 1) && !opened.rings.iter().any(|ring| ring.area() > 0.0);
     if unbounded_by_rings {
+        if opened.rings.is_empty() && !is_bounded {
+            return Err(FaceError::Unbounded);
+        }
         if carrier.periods == [None; 2] || !is_bounded {
-            if opened.rings.is_empty() {
-                return Err(FaceError::Unbounded);
-            }
             // a file with its loops the wrong way round: the largest bounds the material
             opened.rings = opened.rings.into_iter().map(Ring::reversed).collect();
         } else {
@@ -92,7 +92,7 @@ fn whole(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -> Result<O
     let mut ranges = carrier.limits;
     let mut opened = Opened { rings, full: [None; 2] };
     let mut crossed = false;
-    for k in 0..2 {
+    for (k, range) in ranges.iter_mut().enumerate() {
         let Some(period) = carrier.periods[k] else { continue };
         let at = if opened.rings.is_empty() { 0.0 } else { cut_place(carrier, &opened.rings, k, period) };
         let at = match carrier.nurbs() {
@@ -102,7 +102,7 @@ fn whole(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -> Result<O
         crossed |= opened.rings.iter().any(|ring| crossings(ring, k, at, period, carrier.hair(k)) > 0);
         opened.rings = cut(carrier, curves, opened.rings, k, at)?;
         opened.full[k] = Some((at, at + period));
-        ranges[k] = (at, at + period);
+        *range = (at, at + period);
     }
     if crossed {
         return Ok(opened);

@@ -11,6 +11,12 @@ const STEPS: usize = 8;
 /// Places on a whole edge where it is looked at first, at least.
 const LEAST: usize = 16;
 
+/// How often the way between two places is halved.
+const DEPTH: usize = 40;
+
+/// An edge is looked at in no more places than this: one along an axis has every direction from it, and none.
+const MOST: usize = 4096;
+
 /// A part of an edge in the coordinates of the carrier, or a straight join.
 #[derive(Debug, Clone)]
 pub(super) struct Piece {
@@ -140,7 +146,7 @@ impl Sample {
 
 /// Adds places between two whose coordinates are too far apart to be followed over a seam.
 fn refine(carrier: &Carrier, curve: &NurbsCurve, a: Sample, b: Sample, depth: usize, out: &mut Vec<Sample>) {
-    if a.pole.is_some() || b.pole.is_some() || depth > 40 {
+    if a.pole.is_some() || b.pole.is_some() || depth > DEPTH || out.len() > MOST {
         return;
     }
     let step = carrier.beside(b.at, a.at) - a.at;

@@ -37,7 +37,7 @@ impl Window {
     /// The window of a carrier around rings; `full` are the ranges of coordinates at which it was cut open.
     pub(super) fn new(carrier: &Carrier, rings: &[Ring], full: [Option<(f64, f64)>; 2]) -> Result<Self, FaceError> {
         let ranges = [0, 1].map(|k| full[k].unwrap_or_else(|| range(carrier, rings, k)));
-        if ranges.iter().any(|(low, high)| !(high > low) || !(high - low).is_finite()) {
+        if !ranges.iter().all(|(low, high)| low < high && (high - low).is_finite()) {
             return Err(FaceError::Empty);
         }
         let [first, second] = ranges;

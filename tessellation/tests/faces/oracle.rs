@@ -1,7 +1,7 @@
 //! Distances to triangles and polylines by brute force, and surfaces to try.
 
 use glam::{DVec2, DVec3};
-use perpend_kernel::{Direction, NurbsSurface, TrimCurveData, TrimLoopData, Trimming, TrimmingData};
+use perpend_kernel::{Direction, InvalidTrim, NurbsSurface, TrimCurveData, TrimLoopData, Trimming, TrimmingData};
 use perpend_tessellation::Mesh;
 use proptest::prelude::*;
 
@@ -59,6 +59,15 @@ pub(crate) fn largest_deviation(surface: &NurbsSurface, mesh: &Mesh) -> f64 {
 
 /// The trimming of a surface by closed polygons.
 pub(crate) fn polygons(surface: &NurbsSurface, loops: &[Vec<DVec2>], reversed: bool) -> Trimming {
+    try_polygons(surface, loops, reversed).expect("a valid trim")
+}
+
+/// As [`polygons`], of loops that may be refused.
+pub(crate) fn try_polygons(
+    surface: &NurbsSurface,
+    loops: &[Vec<DVec2>],
+    reversed: bool,
+) -> Result<Trimming, InvalidTrim> {
     let side = |from: DVec2, to: DVec2| TrimCurveData {
         degree: 1,
         knots: vec![0.0, 0.0, 1.0, 1.0],
@@ -70,7 +79,8 @@ pub(crate) fn polygons(surface: &NurbsSurface, loops: &[Vec<DVec2>], reversed: b
         outer: true,
         curves: (0..points.len()).map(|i| side(points[i], points[(i + 1) % points.len()])).collect(),
     };
-    entered(surface, loops.iter().map(around).collect(), reversed)
+    let data = TrimmingData { reversed, tolerance: 1e-9, loops: loops.iter().map(around).collect() };
+    Trimming::enter(data, surface).map(|(trimming, _)| trimming)
 }
 
 pub(crate) fn entered(surface: &NurbsSurface, loops: Vec<TrimLoopData>, reversed: bool) -> Trimming {

@@ -6,7 +6,7 @@ use perpend_tessellation::{Limits, Mesh, tessellate};
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
-use crate::oracle::{circle, distance_to_mesh, entered, largest_deviation, polygons, spread, surfaces};
+use crate::oracle::{circle, distance_to_mesh, entered, largest_deviation, polygons, spread, surfaces, try_polygons};
 
 fn unit_square() -> NurbsSurface {
     Plane::new(Frame::WORLD, (0.0, 1.0), (0.0, 1.0)).unwrap().to_nurbs().unwrap()
@@ -100,7 +100,7 @@ fn a_small_face_of_a_large_carrier_is_not_paid_for_by_its_size() {
     let tube = Cylinder::new(Frame::WORLD, 1000.0, (-1e5, 1e5), (0.0, TAU)).unwrap().to_nurbs().unwrap();
     let trimming = entered(&tube, vec![circle(DVec2::splat(0.6), 0.001, true)], false);
     let mesh = mesh(&tube, &trimming, 1e-3);
-    assert!(mesh.error <= 1e-3);
+    assert!(mesh.error <= 1e-3, "{} {}", mesh.error, mesh.triangles.len());
     assert!(mesh.triangles.len() < 20_000, "{}", mesh.triangles.len());
     assert!(largest_deviation(&tube, &mesh) <= mesh.error);
 }
@@ -130,8 +130,7 @@ proptest! {
         }
         loops.retain(|points| points.len() > 2);
         prop_assume!(!loops.is_empty());
-        let data: Vec<_> = loops.clone();
-        let entered = std::panic::catch_unwind(|| polygons(&surface, &data, false));
+        let entered = try_polygons(&surface, &loops, false);
         prop_assume!(entered.is_ok());
         let trimming = entered.unwrap();
         let size = surface.control_box().diagonal();
@@ -150,7 +149,8 @@ proptest! {
             }
             let covered = mesh.triangles.iter().any(|triangle| {
                 let [a, b, c] = triangle.map(|i| mesh.parameters[i as usize]);
-                [(a, b), (b, c), (c, a)].iter().all(|(a, b)| (*b - *a).perp_dot(at - *a) >= 0.0)
+                let (low, high) = (a.min(b).min(c), a.max(b).max(c));
+                at == at.clamp(low, high) && [(a, b), (b, c), (c, a)].iter().all(|(a, b)| (*b - *a).perp_dot(at - *a) >= 0.0)
             });
             let inside = region.side(at) == Side::Inside;
             let lost_at_a_pole = !covered

@@ -593,6 +593,98 @@ fn closed_curves_give_edges_over_their_own_seam() {
 }
 
 #[test]
+fn a_torus_that_passes_its_axis_is_one_of_its_shells() {
+    let (major, minor) = (1.0, 2.0_f64);
+    let meets = (-major / minor).acos();
+    // the outer shell between two parallels, then the inner one
+    let ring = |angle: f64| (raised(minor * angle.sin()), (major + minor * angle.cos()).abs());
+    for (from, to, sign) in [(-1.0, 1.5, 1.0), (meets + 0.2, TAU - meets - 0.4, -1.0)] {
+        let mut sketch = Sketch::on(SourceSurface::Torus { frame: Frame::WORLD, major, minor });
+        let ((a, r), (b, s)) = (ring(from), ring(to));
+        let first = sketch.arc(a, r, (0.0, TAU));
+        let second = sketch.arc(b, s, (1.0, 1.0 + TAU));
+        let (_, _, area) = sketch.bound(&[(first, true)]).bound(&[(second, false)]).built(1, 0);
+        assert_near(area, sign * TAU * minor * (major * (to - from) + minor * (to.sin() - from.sin())));
+    }
+}
+
+#[test]
+fn a_spline_without_loops_is_whole() {
+    let (built, trimming, _) = Sketch::on(SourceSurface::Nurbs(tube())).built(1, 0);
+    assert_eq!(trimming.region().bounds(), (DVec2::ZERO, DVec2::new(14.0, 1.0)));
+    let part = tube().split(Direction::U, 7.0).expect("inside").0;
+    let (open, trimming, _) = Sketch::on(SourceSurface::Nurbs(part)).built(1, 0);
+    assert_eq!(trimming.region().bounds(), (DVec2::ZERO, DVec2::new(7.0, 1.0)));
+    assert_eq!((built.reversed, open.reversed), (false, false));
+}
+
+/// Numbers in `[0, 1)` from a seed.
+struct Numbers(u64);
+
+impl Numbers {
+    fn next(&mut self) -> f64 {
+        self.0 = self.0.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        (self.0 >> 11) as f64 / (1_u64 << 53) as f64
+    }
+}
+
+#[test]
+fn whatever_a_file_says_is_built_or_refused() {
+    let mut numbers = Numbers(7);
+    let surfaces = [
+        cylinder(),
+        SourceSurface::Plane(Frame::WORLD),
+        SourceSurface::Cone { frame: Frame::WORLD, radius: 1.0, half_angle: 0.6 },
+        SourceSurface::Sphere { frame: Frame::WORLD, radius: 2.0 },
+        SourceSurface::Torus { frame: Frame::WORLD, major: 2.0, minor: 1.0 },
+        SourceSurface::Torus { frame: Frame::WORLD, major: 1.0, minor: 2.0 },
+        SourceSurface::Nurbs(tube()),
+        SourceSurface::Revolution {
+            profile: SourceCurve::Line { point: DVec3::X, direction: DVec3::new(0.3, 0.1, 1.0) },
+            point: DVec3::ZERO,
+            axis: DVec3::Z,
+        },
+        SourceSurface::Extrusion {
+            profile: SourceCurve::Circle { frame: Frame::WORLD, radius: 2.0 },
+            direction: DVec3::Z,
+        },
+    ];
+    let (mut built, mut refused) = (0, 0);
+    for round in 0..3000 {
+        let mut sketch = Sketch::on(surfaces[round % surfaces.len()].clone());
+        sketch.same_sense = numbers.next() < 0.5;
+        // edges between places of a coarse lattice, so that many lie on axes, poles and one another
+        let mut place = || DVec3::from_array([0; 3].map(|_| (numbers.next() * 5.0).floor() - 2.0));
+        let corners: Vec<DVec3> = (0..4).map(|_| place()).collect();
+        for _ in 0..1 + (numbers.next() * 3.0) as usize {
+            let count = 1 + (numbers.next() * 4.0) as usize;
+            let uses: Vec<(usize, bool)> = (0..count)
+                .map(|k| {
+                    let (a, b) = (corners[k % 4], corners[(k + 1) % count % 4]);
+                    let frame = raised((numbers.next() * 4.0).floor() - 2.0);
+                    let edge = match (numbers.next() * 3.0) as usize {
+                        0 => sketch.line(a, b),
+                        1 => sketch.arc(frame, 0.5 + 2.0 * numbers.next(), (0.0, TAU)),
+                        _ => sketch.edge(SourceCurve::Circle { frame, radius: 2.0 }, a, b),
+                    };
+                    (edge, numbers.next() < 0.5)
+                })
+                .collect();
+            sketch = sketch.bound(&uses);
+        }
+        match sketch.build() {
+            Ok(face) => {
+                built += 1;
+                let points = face.loops.iter().flat_map(|one| &one.curves).flat_map(|(curve, _)| &curve.points);
+                assert!(points.into_iter().all(|point| point.is_finite()));
+            }
+            Err(_) => refused += 1,
+        }
+    }
+    assert!(built > 100 && refused > 100, "{built} built, {refused} refused");
+}
+
+#[test]
 fn an_open_loop_and_an_unbounded_face_are_refused() {
     let mut sketch = Sketch::on(SourceSurface::Plane(Frame::WORLD));
     let uses = [(DVec3::ZERO, DVec3::X), (DVec3::X, DVec3::Y), (0.5 * DVec3::Y, DVec3::ZERO)];

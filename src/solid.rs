@@ -1,0 +1,338 @@
+//! The signed distance to a closed body: on which side of its faces a point lies.
+//!
+//! Where the foot lies inside a face, its outward normal tells. On an edge or a vertex the *pseudo-normal* does: the sum of the outward
+//! normals of the faces that meet there, each times the angle of the face (Bærentzen and Aanæs 2005, "Signed distance
+//! computation using the angle weighted pseudo-normal", §4); curved faces count by their tangent planes. Faces meet within their
+//! tolerances, and so the faces that meet are those within these of the foot.
+//!
+//! Where the pseudo-normal is nearly perpendicular to the way from the foot, or nearly nothing (a knife's edge, a cusp), other points decide. The ball
+//! about the query point with the lower bound for its radius holds no point of the body, so that all its points lie on one side, as
+//! long as it does not reach through a gap. Points of it are taken from which the foot lies inside one of the faces that meet, where the normal tells.
+
+use std::sync::OnceLock;
+
+use glam::{DVec2, DVec3};
+use perpend_kernel::{Definition, Direction, EntityId, Side};
+use perpend_projection::{FootPoint, Parameter, Place, Query, QueryError, QueryOptions, Scratch};
+
+use crate::batch;
+use crate::corner::{Corner, corners};
+use crate::entity::Entity;
+use crate::group::{Found, Group};
+use crate::model::Model;
+use crate::query::at_index;
+
+/// A body made ready for queries.
+#[derive(Debug, Clone)]
+pub(crate) struct Solid {
+    /// Its faces.
+    pub(crate) faces: Group,
+    /// The largest tolerance of a face.
+    tolerance: f64,
+    /// The corners of each face, in the order of the group.
+    corners: Vec<OnceLock<Vec<Corner>>>,
+    /// Whether points far away are outside.
+    is_outward: OnceLock<bool>,
+}
+
+/// The nearest point of a closed body, and on which side of it a point lies.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct BodyFoot {
+    /// The face on which the nearest point lies.
+    pub face: EntityId,
+    /// The nearest point, as [`Model::nearest_of`] gives it.
+    pub foot: FootPoint,
+    /// The distance: positive outside, negative inside.
+    pub signed_distance: f64,
+    /// On which side the point lies.
+    pub side: BodySide,
+    /// Proven: no point of the body is nearer. The sign is no part of the proof.
+    pub lower_bound: f64,
+}
+
+/// On which side of a closed body a point lies.
+#[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
+pub enum BodySide {
+    /// In the material.
+    Inside,
+    /// Outside it, in a void too.
+    Outside,
+    /// On a face, as far as doubles tell; or in a gap between faces that meet within their tolerances.
+    Boundary,
+}
+
+/// Why a signed distance was not given.
+#[derive(Debug, Clone, PartialEq, thiserror::Error)]
+#[non_exhaustive]
+pub enum BodyError {
+    /// The query is refused.
+    #[error(transparent)]
+    Query(#[from] QueryError),
+    /// A shell is open.
+    #[error(
+        "body {body} has no inside: shells[{shell}] is not closed; ask its distance, or close the shell and say so"
+    )]
+    Open {
+        /// The body.
+        body: EntityId,
+        /// The shell.
+        shell: usize,
+    },
+    /// Points far away would be inside.
+    #[error("body {body} is inside out: points far away would be inside; reverse its faces")]
+    InsideOut {
+        /// The body.
+        body: EntityId,
+    },
+    /// The faces contradict each other.
+    #[error(
+        "body {body}: entity {face} and those that meet it near ({:?}, {:?}, {:?}) do not tell inside from outside: see whether all their normals point outward, and whether they meet within their tolerances", at.x, at.y, at.z
+    )]
+    Undecided {
+        /// The body.
+        body: EntityId,
+        /// The nearest face.
+        face: EntityId,
+        /// The nearest point.
+        at: DVec3,
+    },
+}
+
+/// Below this cosine between the way from the foot and the normal, other points are asked.
+const CLEAR: f64 = 0.05;
+
+/// How far beside the foot these look, as shares of the distance.
+const BESIDE: [f64; 4] = [0.05, 0.2, 0.01, 0.5];
+
+/// How often wider gaps are looked over for the faces that meet, eight times each.
+const WIDENED: usize = 4;
+
+impl Solid {
+    pub(crate) fn new(model: &Model, items: Vec<usize>) -> Self {
+        let tolerances = items.iter().filter_map(|at| model.entities[*at].trimming()).map(|trim| trim.tolerance());
+        let tolerance = tolerances.fold(0.0, f64::max);
+        let faces = Group::new(model, items);
+        let corners = vec![OnceLock::new(); faces.len()];
+        Self { faces, tolerance, corners, is_outward: OnceLock::new() }
+    }
+}
+
+impl Model {
+    /// The distance from `p` to a closed body with its sign, negative inside, and the foot.
+    ///
+    /// The sign is right where the distance exceeds the tolerances to which the faces meet at the foot. A maximum distance among the options is
+    /// passed over.
+    ///
+    /// # Errors
+    ///
+    /// An id that no body has; an open shell; a body that is inside out; faces that do not tell inside from outside; a coordinate that
+    /// is no finite number or beyond 1e75; an option without meaning.
+    pub fn signed_distance(&self, body: EntityId, p: DVec3, options: &QueryOptions) -> Result<BodyFoot, BodyError> {
+        let query = Query::new(p, QueryOptions { max_distance: None, ..*options })?;
+        self.signed(body, &query, &mut Scratch::default())
+    }
+
+    /// [`signed_distance`](Self::signed_distance) for many points, in their order, on all cores where the feature `rayon` is on.
+    #[must_use]
+    pub fn signed_distance_all(
+        &self,
+        body: EntityId,
+        ps: &[DVec3],
+        options: &QueryOptions,
+    ) -> Vec<Result<BodyFoot, BodyError>> {
+        let options = QueryOptions { max_distance: None, ..*options };
+        batch::answers(ps, Scratch::default, |scratch, index, p| {
+            let query = Query::new(*p, options).map_err(|error| at_index(error, index))?;
+            self.signed(body, &query, scratch)
+        })
+    }
+
+    fn signed(&self, body: EntityId, query: &Query, scratch: &mut Scratch) -> Result<BodyFoot, BodyError> {
+        let solid = self.solid(body)?;
+        let shells = self.body(body).map_or(&[][..], crate::Body::shells);
+        if let Some(shell) = shells.iter().position(|shell| !shell.closed) {
+            return Err(BodyError::Open { body, shell });
+        }
+        let asked = Asked { model: self, solid, options: query.options };
+        if !*solid.is_outward.get_or_init(|| asked.is_outward()) {
+            return Err(BodyError::InsideOut { body });
+        }
+        let (face, foot) = solid.faces.nearest(self, query, scratch).expect("a body has faces, and none is too far");
+        let side = asked.side(query.point, (face, foot), scratch);
+        let side = side.ok_or(BodyError::Undecided { body, face, at: foot.point })?;
+        let signed_distance = if side == BodySide::Inside { -foot.distance } else { foot.distance };
+        Ok(BodyFoot { face, foot, signed_distance, side, lower_bound: foot.lower_bound })
+    }
+}
+
+/// A body that is asked.
+#[derive(Clone, Copy)]
+struct Asked<'a> {
+    model: &'a Model,
+    solid: &'a Solid,
+    options: QueryOptions,
+}
+
+/// What the faces that meet at a foot tell.
+struct Meeting {
+    /// The sum of the normals, each times its angle.
+    sum: DVec3,
+    /// The sum of the angles.
+    angles: f64,
+    /// The faces, with the parameters of their points nearest to the foot.
+    faces: Vec<(usize, DVec2)>,
+}
+
+impl<'a> Asked<'a> {
+    /// Whether a point far away is outside, or cannot be told.
+    fn is_outward(self) -> bool {
+        let bounds = self.solid.faces.bounds;
+        let p = bounds.centre() + DVec3::new(1.9, 1.3, 1.6) * bounds.diagonal();
+        let asked = Self { options: QueryOptions::default(), ..self };
+        let scratch = &mut Scratch::default();
+        let Ok(query) = Query::new(p, asked.options) else { return true };
+        let found = self.solid.faces.nearest(self.model, &query, scratch);
+        found.and_then(|found| asked.side(p, found, scratch)) != Some(BodySide::Inside)
+    }
+
+    /// On which side of the body a point lies whose nearest point is known; none where the faces do not tell.
+    fn side(self, p: DVec3, (face, foot): Found, scratch: &mut Scratch) -> Option<BodySide> {
+        let reach = self.solid.faces.bounds.reach().max(p.abs().max_element());
+        if foot.distance <= 16.0 * f64::EPSILON * reach {
+            return Some(BodySide::Boundary);
+        }
+        if let Some(side) = by_normal(p, &foot) {
+            return Some(side);
+        }
+        let way = (p - foot.point).normalize_or_zero();
+        let meeting = self.meeting(face, &foot, scratch);
+        let clear = CLEAR.max(64.0 * f64::EPSILON * reach / foot.distance);
+        if meeting.faces.len() > 1 && meeting.sum.length() > CLEAR * meeting.angles {
+            let cosine = way.dot(meeting.sum.normalize());
+            if cosine.abs() > clear {
+                return Some(side_of(cosine));
+            }
+        }
+        self.by_others(p, &foot, &meeting, scratch).or_else(|| {
+            // no farther than the faces may be apart: a gap is neither inside nor outside
+            (foot.distance <= self.tolerance(face, face)).then_some(BodySide::Boundary)
+        })
+    }
+
+    /// To what length two faces meet.
+    fn tolerance(self, a: EntityId, b: EntityId) -> f64 {
+        let entity = |id: EntityId| self.model.entity(id);
+        let of = |id: EntityId| entity(id).and_then(Entity::trimming).map_or(0.0, |trimming| trimming.tolerance());
+        let size = self.solid.faces.bounds.diagonal();
+        of(a) + of(b) + self.options.coincidence.unwrap_or(1e-6 * size)
+    }
+
+    /// The faces that meet at a foot. Where the foot's own is the only one within the tolerances, wider gaps are looked over, up to
+    /// an eighth of the distance: seen from there, they are none.
+    fn meeting(self, face: EntityId, foot: &FootPoint, scratch: &mut Scratch) -> Meeting {
+        let mut widened = 1.0;
+        loop {
+            let meeting = self.meeting_within(face, foot, widened, scratch);
+            widened *= 8.0;
+            let is_wide =
+                widened >= 8.0_f64.powi(WIDENED as i32) || widened * self.tolerance(face, face) > 0.125 * foot.distance;
+            if meeting.faces.len() > 1 || is_wide {
+                return meeting;
+            }
+        }
+    }
+
+    fn meeting_within(self, face: EntityId, foot: &FootPoint, widened: f64, scratch: &mut Scratch) -> Meeting {
+        let mut meeting = Meeting { sum: DVec3::ZERO, angles: 0.0, faces: Vec::new() };
+        let faces = &self.solid.faces;
+        let most = self.tolerance(face, face) + self.solid.tolerance;
+        for item in faces.near(self.model, foot.point, widened * most) {
+            let entity = faces.entity(self.model, item);
+            let within = widened * self.tolerance(face, entity.id);
+            let options = QueryOptions { max_distance: Some(within), ..self.options };
+            let query = Query { point: foot.point, options };
+            let Some(met) = entity.prepared().project(&query, scratch) else { continue };
+            if met.distance > within {
+                continue;
+            }
+            let Parameter::Surface(u, v) = met.parameter else { continue };
+            meeting.faces.push((item, DVec2::new(u, v)));
+            let all = self.solid.corners[item].get_or_init(|| corners(entity));
+            let mut turns = false;
+            for corner in all.iter().filter(|corner| corner.point.distance(foot.point) <= within) {
+                meeting.sum += corner.weighted;
+                meeting.angles += corner.angle;
+                turns = true;
+            }
+            if !turns && let Some(normal) = met.normal {
+                meeting.sum += std::f64::consts::PI * normal;
+                meeting.angles += std::f64::consts::PI;
+            }
+        }
+        meeting
+    }
+
+    /// What points say that lie on the same side, and whose feet lie inside the faces that meet.
+    fn by_others(self, p: DVec3, foot: &FootPoint, meeting: &Meeting, scratch: &mut Scratch) -> Option<BodySide> {
+        for share in BESIDE {
+            for (item, at) in &meeting.faces {
+                let entity = self.solid.faces.entity(self.model, *item);
+                for (point, normal) in beside(entity, *at, share * foot.distance) {
+                    let Some(other) = on_normal(p, foot.lower_bound, point, normal) else { continue };
+                    let Ok(query) = Query::new(other, self.options) else { continue };
+                    let Some((_, foot)) = self.solid.faces.nearest(self.model, &query, scratch) else { continue };
+                    if let Some(side) = by_normal(other, &foot) {
+                        return Some(side);
+                    }
+                }
+            }
+        }
+        None
+    }
+}
+
+/// The side that the normal tells, where the foot lies inside a face.
+fn by_normal(p: DVec3, foot: &FootPoint) -> Option<BodySide> {
+    if !matches!(foot.place, Place::Interior | Place::Seam | Place::Crease) {
+        return None;
+    }
+    let cosine = (p - foot.point).try_normalize()?.dot(foot.normal?);
+    (cosine.abs() > 0.5).then(|| side_of(cosine))
+}
+
+fn side_of(cosine: f64) -> BodySide {
+    if cosine > 0.0 { BodySide::Outside } else { BodySide::Inside }
+}
+
+/// Points inside a face about so far from one of it, with their normals.
+fn beside(entity: &Entity, at: DVec2, length: f64) -> Vec<(DVec3, DVec3)> {
+    let Definition::NurbsSurface(surface) = entity.definition.as_ref() else { return Vec::new() };
+    let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|direction| surface.domain(direction));
+    let (min, max) = (DVec2::new(u0, v0), DVec2::new(u1, v1));
+    let mut d = [DVec3::ZERO; 4];
+    // beside a pole, where a derivative vanishes, those a little way off tell the speed
+    let inner = at.lerp(0.5 * (min + max), 0.01);
+    surface.derivatives(inner.x, inner.y, 1, &mut d);
+    let speed = DVec2::new(d[2].length(), d[1].length());
+    let step = (length / speed).min(0.5 * (max - min));
+    let turns = (0..8).map(|k| DVec2::from_angle(f64::from(k) * std::f64::consts::FRAC_PI_4 + 0.2));
+    turns
+        .filter_map(|turn| {
+            let there = at + turn * step;
+            let in_domain = there.cmpgt(min).all() && there.cmplt(max).all();
+            let kept = |side: Side| side == Side::Inside;
+            let is_inside = in_domain && entity.trimming().is_none_or(|trim| kept(trim.region().side(there)));
+            let normal = surface.normal(there.x, there.y).try_normalize().filter(|_| is_inside)?;
+            Some((surface.point(there.x, there.y), normal))
+        })
+        .collect()
+}
+
+/// A point on the normal of a face's point, as near to that as the open ball about `p` lets it, less a tenth; none where the normal misses the ball.
+fn on_normal(p: DVec3, radius: f64, point: DVec3, normal: DVec3) -> Option<DVec3> {
+    let along = (p - point).dot(normal);
+    let off = (p - point - along * normal).length();
+    let half = (radius * radius - off * off).sqrt();
+    // NaN where the normal misses the ball
+    (half > 0.0).then(|| point + (along - along.signum() * 0.9 * half) * normal)
+}

@@ -1,0 +1,132 @@
+//! Faces: surfaces between loops of edges.
+
+use std::io::{self, Write};
+use std::sync::Arc;
+
+use glam::DVec2;
+use perpend::kernel::{PlaneCurve, Side, Trimming};
+use perpend::{Definition, Direction, EntityId, NurbsSurface};
+
+use super::edge::space_curves;
+use super::geometry::{Analytic, known_kind, spline_surface};
+use super::part::FaceSource;
+use super::text::{Id, Text, list, string};
+use super::topology::{Topology, Used};
+use super::{Fitted, Written};
+
+/// A loop of p-curves.
+struct Loop {
+    outer: bool,
+    /// Whether the face lies on its left in the parameters.
+    left: bool,
+    curves: Vec<(PlaneCurve, Option<EntityId>)>,
+}
+
+/// Writes a face. `edges` finds the definition of an edge entity.
+pub(super) fn face<W: Write>(
+    text: &mut Text<W>,
+    topology: &mut Topology,
+    source: &FaceSource<'_>,
+    edges: &dyn Fn(EntityId) -> Option<Arc<Definition>>,
+    tolerance: f64,
+    written: &mut Written,
+) -> io::Result<Id> {
+    let FaceSource { entity, surface, trimming, .. } = *source;
+    let reversed = trimming.is_some_and(Trimming::reversed);
+    let mut bounds = Vec::new();
+    let mut has_outer = false;
+    for one in loops(surface, trimming) {
+        let mut path: Vec<Used> = Vec::new();
+        for (plane, edge) in &one.curves {
+            let related = edge.and_then(|id| Some((id, edges(id)?)));
+            for curve in space_curves(surface, plane, related, tolerance) {
+                if curve.deviation > 0.1 * tolerance && curve.entity.is_none() {
+                    written.fitted.push(Fitted { face: entity.id(), deviation: curve.deviation });
+                }
+                path.extend(topology.edge(text, &curve, entity.id())?);
+            }
+        }
+        if one.left == reversed {
+            path.reverse();
+            path.iter_mut().for_each(|used| used.forward = !used.forward);
+        }
+        let chain = if path.is_empty() {
+            let at = one.curves[0].0.start();
+            let (_, vertex) = topology.vertex(text, surface.point(at.x, at.y))?;
+            text.add(format_args!("VERTEX_LOOP('',{vertex})"))?
+        } else {
+            let mut oriented = Vec::with_capacity(path.len());
+            for Used { edge, forward } in path {
+                let sense = if forward { ".T." } else { ".F." };
+                oriented.push(text.add(format_args!("ORIENTED_EDGE('',*,*,{edge},{sense})"))?);
+            }
+            text.add(format_args!("EDGE_LOOP('',{})", list(oriented, |id| id.to_string())))?
+        };
+        // a face has one of these at most
+        let outer = one.outer && !has_outer;
+        has_outer |= outer;
+        let keyword = if outer { "FACE_OUTER_BOUND" } else { "FACE_BOUND" };
+        bounds.push(text.add(format_args!("{keyword}('',{chain},.T.)"))?);
+    }
+    let kind = known_kind(entity.record(), entity.definition());
+    let (carrier, outward) = match Analytic::of(&kind) {
+        Some(analytic) => (analytic.write(text)?, same_normal(surface, &analytic)),
+        None => (spline_surface(text, surface)?, true),
+    };
+    let sense = if outward != reversed { ".T." } else { ".F." };
+    let name = string(entity.name());
+    text.add(format_args!("ADVANCED_FACE({name},{},{carrier},{sense})", list(bounds, |id| id.to_string())))
+}
+
+/// Whether `S_u × S_v` has the sense of the standard's normal.
+fn same_normal(surface: &NurbsSurface, analytic: &Analytic) -> bool {
+    let [u, v] = [Direction::U, Direction::V].map(|direction| {
+        let (from, to) = surface.domain(direction);
+        // away from poles, seams and knots
+        from + 0.381_966 * (to - from)
+    });
+    let mut out = [glam::DVec3::ZERO; 4];
+    surface.derivatives(u, v, 1, &mut out);
+    out[2].cross(out[1]).dot(analytic.normal(out[0])) > 0.0
+}
+
+/// The loops of a trim; without one, the border of the domain.
+fn loops(surface: &NurbsSurface, trimming: Option<&Trimming>) -> Vec<Loop> {
+    let Some(trimming) = trimming else {
+        let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|direction| surface.domain(direction));
+        let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1)].map(|(u, v)| DVec2::new(u, v));
+        let side = |i: usize| PlaneCurve::line(corners[i], corners[(i + 1) % 4]).expect("a domain has an extent");
+        return vec![Loop { outer: true, left: true, curves: (0..4).map(|i| (side(i), None)).collect() }];
+    };
+    let of = |one: &perpend::kernel::TrimLoop| Loop {
+        outer: one.outer,
+        left: lies_left(trimming, &one.curves.iter().map(|trim| &trim.curve).collect::<Vec<_>>()),
+        curves: one.curves.iter().map(|trim| (trim.curve.clone(), trim.edge)).collect(),
+    };
+    trimming.loops().iter().map(of).collect()
+}
+
+/// Whether the region lies on the left of a loop: the first place beside it tells where one side is in the region and the other is not. Loops
+/// run so by convention, and are believed where no place tells.
+fn lies_left(trimming: &Trimming, curves: &[&PlaneCurve]) -> bool {
+    let region = trimming.region();
+    let (low, high) = region.bounds();
+    let size = (high - low).max_element();
+    for share in [1e-6, 1e-4, 1e-2] {
+        for curve in curves {
+            let (from, to) = curve.domain();
+            for at in [0.5, 0.3, 0.7] {
+                let mut out = [DVec2::ZERO; 2];
+                curve.derivatives(from + at * (to - from), &mut out);
+                let Some(left) = out[1].try_normalize().map(DVec2::perp) else { continue };
+                let sides = [1.0, -1.0].map(|sign| region.side(out[0] + sign * share * size * left));
+                match sides {
+                    [Side::Inside, Side::Outside] => return true,
+                    [Side::Outside, Side::Inside] => return false,
+                    _ => {}
+                }
+            }
+        }
+    }
+    true
+}
