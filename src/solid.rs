@@ -7,7 +7,8 @@
 //!
 //! Where the pseudo-normal is nearly perpendicular to the way from the foot, or nearly nothing (a knife's edge, a cusp), other points decide. The ball
 //! about the query point with the lower bound for its radius holds no point of the body, so that all its points lie on one side, as
-//! long as it does not reach through a gap. Points of it are taken from which the foot lies inside one of the faces that meet, where the normal tells.
+//! long as it does not reach through a gap. Points of it are taken from which the foot lies inside one of the faces that meet, where the normal
+//! tells; where the ball does not reach over any of these, points of it that lie farther out are asked in turn.
 
 use std::sync::OnceLock;
 
@@ -104,6 +105,10 @@ const CLEAR: f64 = 0.05;
 /// How far beside the foot these look, as shares of the distance.
 const BESIDE: [f64; 4] = [0.05, 0.2, 0.01, 0.5];
 
+/// How often points farther out are asked in turn, and how far these lie from one another, as a share of the lower bound.
+const DETOURS: u32 = 2;
+const DETOUR: f64 = 0.7;
+
 /// How often wider gaps are looked over for the faces that meet, eight times each.
 const WIDENED: usize = 4;
 
@@ -158,7 +163,7 @@ impl Model {
             return Err(BodyError::InsideOut { body });
         }
         let (face, foot) = solid.faces.nearest(self, query, scratch).expect("a body has faces, and none is too far");
-        let side = asked.side(query.point, (face, foot), scratch);
+        let side = asked.side(query.point, (face, foot), DETOURS, scratch);
         let side = side.ok_or(BodyError::Undecided { body, face, at: foot.point })?;
         let signed_distance = if side == BodySide::Inside { -foot.distance } else { foot.distance };
         Ok(BodyFoot { face, foot, signed_distance, side, lower_bound: foot.lower_bound })
@@ -179,8 +184,18 @@ struct Meeting {
     sum: DVec3,
     /// The sum of the angles.
     angles: f64,
-    /// The faces, with the parameters of their points nearest to the foot.
-    faces: Vec<(usize, DVec2)>,
+    /// The faces, with their points nearest to the foot.
+    faces: Vec<Met>,
+}
+
+/// A face that meets others at a foot.
+struct Met {
+    /// Its place in the group.
+    item: usize,
+    /// The parameters of its point nearest to the foot.
+    at: DVec2,
+    /// Its outward normal there.
+    normal: Option<DVec3>,
 }
 
 impl<'a> Asked<'a> {
@@ -192,11 +207,12 @@ impl<'a> Asked<'a> {
         let scratch = &mut Scratch::default();
         let Ok(query) = Query::new(p, asked.options) else { return true };
         let found = self.solid.faces.nearest(self.model, &query, scratch);
-        found.and_then(|found| asked.side(p, found, scratch)) != Some(BodySide::Inside)
+        found.and_then(|found| asked.side(p, found, DETOURS, scratch)) != Some(BodySide::Inside)
     }
 
     /// On which side of the body a point lies whose nearest point is known; none where the faces do not tell.
-    fn side(self, p: DVec3, (face, foot): Found, scratch: &mut Scratch) -> Option<BodySide> {
+    /// Other points may be asked, and others in their place, `detours` times.
+    fn side(self, p: DVec3, (face, foot): Found, detours: u32, scratch: &mut Scratch) -> Option<BodySide> {
         let reach = self.solid.faces.bounds.reach().max(p.abs().max_element());
         if foot.distance <= 16.0 * f64::EPSILON * reach {
             return Some(BodySide::Boundary);
@@ -213,7 +229,8 @@ impl<'a> Asked<'a> {
                 return Some(side_of(cosine));
             }
         }
-        self.by_others(p, &foot, &meeting, scratch).or_else(|| {
+        let by_others = self.by_others(p, &foot, &meeting, scratch);
+        by_others.or_else(|| self.by_detour(p, &foot, &meeting, detours, scratch)).or_else(|| {
             // no farther than the faces may be apart: a gap is neither inside nor outside
             (foot.distance <= self.tolerance(face, face)).then_some(BodySide::Boundary)
         })
@@ -256,7 +273,7 @@ impl<'a> Asked<'a> {
                 continue;
             }
             let Parameter::Surface(u, v) = met.parameter else { continue };
-            meeting.faces.push((item, DVec2::new(u, v)));
+            meeting.faces.push(Met { item, at: DVec2::new(u, v), normal: met.normal });
             let all = self.solid.corners[item].get_or_init(|| corners(entity));
             let mut turns = false;
             for corner in all.iter().filter(|corner| corner.point.distance(foot.point) <= within) {
@@ -275,15 +292,39 @@ impl<'a> Asked<'a> {
     /// What points say that lie on the same side, and whose feet lie inside the faces that meet.
     fn by_others(self, p: DVec3, foot: &FootPoint, meeting: &Meeting, scratch: &mut Scratch) -> Option<BodySide> {
         for share in BESIDE {
-            for (item, at) in &meeting.faces {
-                let entity = self.solid.faces.entity(self.model, *item);
-                for (point, normal) in beside(entity, *at, share * foot.distance) {
+            for met in &meeting.faces {
+                let entity = self.solid.faces.entity(self.model, met.item);
+                for (point, normal) in beside(entity, met.at, share * foot.distance) {
                     let Some(other) = on_normal(p, foot.lower_bound, point, normal) else { continue };
                     let Ok(query) = Query::new(other, self.options) else { continue };
                     let Some((_, foot)) = self.solid.faces.nearest(self.model, &query, scratch) else { continue };
                     if let Some(side) = by_normal(other, &foot) {
                         return Some(side);
                     }
+                }
+            }
+        }
+        None
+    }
+
+    /// What points on the same side say that lie over or under the faces that meet.
+    fn by_detour(
+        self,
+        p: DVec3,
+        foot: &FootPoint,
+        meeting: &Meeting,
+        detours: u32,
+        scratch: &mut Scratch,
+    ) -> Option<BodySide> {
+        let left = detours.checked_sub(1)?;
+        for normal in meeting.faces.iter().filter_map(|met| met.normal) {
+            for way in [normal, -normal] {
+                let other = p + DETOUR * foot.lower_bound * way;
+                let Ok(query) = Query::new(other, self.options) else { continue };
+                let Some(found) = self.solid.faces.nearest(self.model, &query, scratch) else { continue };
+                match self.side(other, found, left, scratch) {
+                    None | Some(BodySide::Boundary) => {}
+                    side => return side,
                 }
             }
         }

@@ -152,23 +152,23 @@ fn a_cylinder_tells_inside_from_outside_at_its_seam_and_rims() {
         let beyond = DVec2::new(p.x.hypot(p.y) - 1.0, (p.z - 0.5).abs() - 0.5);
         beyond.max(DVec2::ZERO).length() + beyond.max_element().min(0.0)
     };
-    agrees(&model, body, 100_000, (DVec3::splat(-2.0), DVec3::splat(2.0)), expected);
+    agrees(&model, body, 30_000, (DVec3::splat(-2.0), DVec3::splat(2.0)), expected);
 }
 
 #[test]
 fn spheres_tell_inside_from_outside_at_their_poles_and_seams() {
     let mut model = Model::new();
-    for (trimmed, outward) in [(false, true), (true, true)] {
-        let ball = sphere(&mut model, DVec3::ZERO, 1.0, trimmed, outward);
-        let body = closed(&mut model, vec![ball]);
-        agrees(&model, body, 20_000, (DVec3::splat(-2.0), DVec3::splat(2.0)), |p| p.length() - 1.0);
+    let ball = sphere(&mut model, DVec3::ZERO, 1.0, true, true);
+    let body = closed(&mut model, vec![ball]);
+    agrees(&model, body, 20_000, (DVec3::splat(-2.0), DVec3::splat(2.0)), |p| p.length() - 1.0);
+    for trimmed in [true, false] {
+        let outer = cuboid(&mut model, DVec3::splat(-2.0), DVec3::splat(2.0), false);
+        let bubble = sphere(&mut model, DVec3::ZERO, 1.0, trimmed, false);
+        let shells = vec![Shell { faces: outer, closed: true }, Shell { faces: vec![bubble], closed: true }];
+        let body = model.insert_body("bubble", shells).unwrap();
+        let expected = |p: DVec3| to_box(p, DVec3::splat(-2.0), DVec3::splat(2.0)).max(1.0 - p.length());
+        agrees(&model, body, 20_000, (DVec3::splat(-3.0), DVec3::splat(3.0)), expected);
     }
-    let outer = cuboid(&mut model, DVec3::splat(-2.0), DVec3::splat(2.0), false);
-    let bubble = sphere(&mut model, DVec3::ZERO, 1.0, true, false);
-    let shells = vec![Shell { faces: outer, closed: true }, Shell { faces: vec![bubble], closed: true }];
-    let body = model.insert_body("bubble", shells).unwrap();
-    let expected = |p: DVec3| to_box(p, DVec3::splat(-2.0), DVec3::splat(2.0)).max(1.0 - p.length());
-    agrees(&model, body, 20_000, (DVec3::splat(-3.0), DVec3::splat(3.0)), expected);
 }
 
 /// A sharp wedge: the faces at its edge are a hundredth of a radian apart, so that their normals nearly cancel.
@@ -265,7 +265,8 @@ fn points_on_the_faces_are_on_the_boundary() {
     let body = closed(&mut model, faces);
     for p in [DVec3::ZERO, DVec3::X, DVec3::new(0.5, 0.0, 0.25), DVec3::new(1.0, 1.0, 0.3)] {
         let answer = model.signed_distance(body, p, &QueryOptions::default()).unwrap();
-        assert_eq!((answer.side, answer.signed_distance), (BodySide::Boundary, 0.0), "{p:?}: {answer:?}");
+        assert_eq!(answer.side, BodySide::Boundary, "{p:?}: {answer:?}");
+        assert!(answer.signed_distance.abs() <= 1e-15, "{p:?}: {answer:?}");
     }
 }
 

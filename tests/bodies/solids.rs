@@ -152,7 +152,7 @@ pub(crate) fn sphere(model: &mut Model, centre: DVec3, radius: f64, trimmed: boo
         from + 0.4 * (to - from)
     });
     let is_out = ball.normal(at[0], at[1]).dot(ball.point(at[0], at[1]) - centre) > 0.0;
-    assert!(trimmed || is_out == outward, "an untrimmed sphere looks outward");
+    assert!(trimmed || is_out == outward, "an untrimmed sphere looks inward, to its centre");
     if trimmed {
         model.insert_trimmed("ball", whole(ball, is_out != outward)).expect("a ball")
     } else {

@@ -23,6 +23,7 @@ use super::state::{Foot, State};
 use super::walk::close;
 use super::{Hierarchy, LocalSolution, REFINED_DEPTH, ROUNDING, Workspace, glance, squared};
 use crate::query::{Query, QueryOptions};
+use crate::solver::Tie;
 use crate::statistics::Work;
 
 /// The index of the leaf of a point that lies in none: a point of the boundary.
@@ -178,11 +179,11 @@ impl Hierarchy {
             if proven >= state.goal.wanted {
                 return TrimmedFoot::Beyond(state.done);
             }
-            if state.best.leaf == NO_LEAF && !is_boundary_known {
-                // the anchor is no foot, and the work did not suffice for the proof that there is none
-                let options = QueryOptions { max_distance: None, ..query.options };
-                return self.project_trimmed(&Query { options, ..*query }, anchor, boundary, workspace);
-            }
+        }
+        if state.best.leaf == NO_LEAF && !is_boundary_known {
+            // the anchor is no foot: it lies at the limit but for rounding, or the work did not suffice for the proof that there is none
+            let options = QueryOptions { max_distance: None, ..query.options };
+            return self.project_trimmed(&Query { options, ..*query }, anchor, boundary, workspace);
         }
         let lower = state.tau().min(state.open) - self.reserve - 10.0 * ROUNDING * state.point.length();
         let lower = lower.min(bound).max(0.0);
@@ -190,7 +191,17 @@ impl Hierarchy {
             return TrimmedFoot::OnBoundary { lower_bound: lower, done: state.done };
         }
         let best = state.best;
-        let mut solution = self.solution(&mut state, self.coincidence(query));
+        // a point of the boundary that is as near belongs to no leaf: it is told of, and not polished
+        let (near, coincidence) = (best.distance + state.goal.gap, self.coincidence(query));
+        let is_tied = state
+            .met
+            .iter()
+            .any(|foot| foot.leaf == NO_LEAF && foot.distance <= near && foot.point.distance(best.point) > coincidence);
+        state.met.retain(|foot| foot.leaf != NO_LEAF);
+        let mut solution = self.solution(&mut state, coincidence);
+        if is_tied && solution.tie == Tie::None {
+            solution.tie = Tie::Apart;
+        }
         // polished feet may have left the region: their distance is no bound
         solution.lower_bound = lower;
         let trim = self.trim.as_ref().expect("a trimmed surface");
