@@ -381,6 +381,9 @@ pub(crate) struct ReportArguments {
     /// Measure all points against this entity, and show it alone
     #[arg(long, value_name = "ID", value_parser = entity_id)]
     pub(crate) entity: Option<EntityId>,
+    /// Measure all points against this body, and show it alone
+    #[arg(long, value_name = "ID", value_parser = entity_id, conflicts_with = "entity")]
+    pub(crate) body: Option<EntityId>,
     /// How far triangles may be from the surfaces, in the model's unit; without it, 2e-4 times the size of what is shown
     #[arg(long, value_name = "E", value_parser = above_zero, allow_negative_numbers = true)]
     pub(crate) chord: Option<f64>,

@@ -13,7 +13,7 @@ use std::collections::HashSet;
 use std::path::Path;
 use std::process::ExitCode;
 
-use perpend::{Aabb, DVec3, Entity, EntityId, FootPoint, Model, QueryOptions};
+use perpend::{Aabb, Body, BodyError, DVec3, Entity, EntityId, FootPoint, Model, QueryOptions};
 
 use crate::args::ReportArguments;
 use crate::deviation_report::page::Report;
@@ -22,7 +22,7 @@ use crate::deviation_report::survey::{Measured, Survey};
 use crate::error::CommandError;
 use crate::project::answer::Layout;
 use crate::project::complaints::Complaints;
-use crate::project::engine::Engine;
+use crate::project::engine::{Engine, Target};
 use crate::project::output::Output;
 use crate::project::points::{Batch, Points};
 use crate::project::source::Source;
@@ -43,13 +43,9 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<ExitCode, CommandError>
     if model.is_empty() {
         return Err(CommandError::NoEntities { model: arguments.model.clone() });
     }
-    if let Some(id) = arguments.entity
-        && model.entity(id).is_none()
-    {
-        return Err(CommandError::unknown_entity(arguments.model.clone(), &model, id));
-    }
-    let (survey, bad) = survey(arguments, &model)?;
-    let shown = shown(&model, arguments.entity, &survey);
+    let asked = Asked::of(arguments, &model)?;
+    let (survey, bad) = survey(arguments, asked, &model)?;
+    let shown = shown(&model, asked, &survey);
     let size = size(&shown);
     let chord = arguments.chord.unwrap_or(if size > 0.0 { CHORD * size } else { CHORD });
     let part = Part::new(&shown, chord).expect("the command line takes no other chord errors");
@@ -71,13 +67,31 @@ pub(crate) fn run(arguments: &ReportArguments) -> Result<ExitCode, CommandError>
 }
 
 /// Measures all points; with how many rows could not be read.
-fn survey(arguments: &ReportArguments, model: &Model) -> Result<(Survey, u64), CommandError> {
+fn survey(arguments: &ReportArguments, asked: Asked, model: &Model) -> Result<(Survey, u64), CommandError> {
     let source = Source::of(&arguments.points);
     let (input, length) = source.open()?;
     let bar = progress::bar(length, true);
     let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
     let columns = points.header().map_err(|problem| source.wrong(problem))?;
-    let target = target(arguments.entity, source, &columns)?;
+    let target = match asked {
+        Asked::Entity(id) => target(Some(id), source, &columns)?,
+        Asked::Body(_) if columns.entity.is_some() => {
+            return Err(CommandError::EntityAndBody { name: source.to_string() });
+        }
+        Asked::Body(id) => Target::Body(id),
+        // the one body that the model is tells the sides better than its faces do
+        Asked::All => match (target(None, source, &columns)?, only_body(model)) {
+            (Target::Nearest, Some(body)) => Target::Body(body.id()),
+            (target, _) => target,
+        },
+    };
+    if let Target::Body(id) = target
+        && model.body(id).is_some_and(Body::is_closed)
+        && let Err(source @ BodyError::InsideOut { .. }) =
+            model.signed_distance(id, DVec3::ZERO, &QueryOptions::default())
+    {
+        return Err(CommandError::Body { model: arguments.model.clone(), source });
+    }
     let layout = Layout { columns: &columns, normals: false };
     let engine = Engine::new(model, target, QueryOptions::default(), layout);
     let mut complaints = Complaints::new(source, &bar);
@@ -113,13 +127,55 @@ fn measured(line: u64, point: DVec3, entity: EntityId, foot: &FootPoint, engine:
     }
 }
 
-/// What is drawn: the entity, or all that are no parts of faces, since the faces stand for those; and what is nearest to a point.
-fn shown<'a>(model: &'a Model, entity: Option<EntityId>, survey: &Survey) -> Vec<&'a Entity> {
+/// What the points are measured against.
+#[derive(Debug, Clone, Copy)]
+enum Asked {
+    Entity(EntityId),
+    Body(EntityId),
+    /// The whole model, or what each row names.
+    All,
+}
+
+impl Asked {
+    fn of(arguments: &ReportArguments, model: &Model) -> Result<Self, CommandError> {
+        let path = || arguments.model.clone();
+        match (arguments.entity, arguments.body) {
+            (Some(id), _) if model.entity(id).is_none() => Err(CommandError::unknown_entity(path(), model, id)),
+            (_, Some(id)) if model.body(id).is_none() => Err(CommandError::unknown_body(path(), model, id)),
+            (Some(id), _) => Ok(Self::Entity(id)),
+            (_, Some(id)) => Ok(Self::Body(id)),
+            (None, None) => Ok(Self::All),
+        }
+    }
+}
+
+/// The entities that are parts of faces: carriers and edges.
+fn parts(model: &Model) -> HashSet<EntityId> {
     let carriers = model.entities().iter().filter_map(Entity::carrier);
     let edges = model.entities().iter().filter_map(Entity::trimming).flat_map(|trimming| trimming.edges());
-    let parts: HashSet<EntityId> = carriers.chain(edges).collect();
-    let is_shown =
-        |id: EntityId| survey.of_entity.contains_key(&id) || entity.map_or(!parts.contains(&id), |entity| entity == id);
+    carriers.chain(edges).collect()
+}
+
+/// The body that is all of the model, if it is closed.
+fn only_body(model: &Model) -> Option<&Body> {
+    let [body] = model.bodies() else { return None };
+    let parts = parts(model);
+    let faces: HashSet<EntityId> = body.faces().collect();
+    let is_of_body = |entity: &Entity| faces.contains(&entity.id()) || parts.contains(&entity.id());
+    (body.is_closed() && model.entities().iter().all(is_of_body)).then_some(body)
+}
+
+/// What is drawn: what was asked, faces in place of their parts, and what is nearest to a point.
+fn shown<'a>(model: &'a Model, asked: Asked, survey: &Survey) -> Vec<&'a Entity> {
+    let wanted: HashSet<EntityId> = match asked {
+        Asked::Entity(id) => HashSet::from([id]),
+        Asked::Body(id) => model.body(id).into_iter().flat_map(Body::faces).collect(),
+        Asked::All => {
+            let parts = parts(model);
+            model.entities().iter().map(Entity::id).filter(|id| !parts.contains(id)).collect()
+        }
+    };
+    let is_shown = |id: EntityId| wanted.contains(&id) || survey.of_entity.contains_key(&id);
     model.entities().iter().filter(|entity| is_shown(entity.id())).collect()
 }
 

@@ -182,7 +182,8 @@ impl Report<'_> {
 
 const MEANING: &str = "\
 A deviation is the distance from a measured point to the nearest point of the model, positive on the side of the surface's normal and negative \
-behind it; of curves, and where a surface has no normal, it has no side and is positive. No point of the model is nearer than the lower \
+behind it, or, of a closed body, positive outside and negative inside; of curves, and where a surface has no normal, it has no side and is \
+positive. No point of the model is nearer than the lower \
 bound, which is proven, rounding included: the true distance lies between the two. An answer is not certified where they are farther apart \
 than 1e-9 of the model's size. The standard deviation is that of a sample, with n - 1; percentiles are interpolated. Made by perpend.";
 

@@ -2,7 +2,7 @@
 
 use std::collections::HashMap;
 
-use perpend::{DVec3, EntityId, FootPoint, Model, Query, QueryError, QueryOptions, Scratch};
+use perpend::{Body, BodyError, BodyFoot, DVec3, EntityId, FootPoint, Model, Query, QueryError, QueryOptions, Scratch};
 use rayon::prelude::*;
 
 use crate::project::answer::{Layout, Named};
@@ -23,6 +23,8 @@ pub(crate) enum Target {
     Named,
     /// The nearest entity of the model.
     Nearest,
+    /// The nearest face of this body; where the body is closed the sign is its own: negative inside.
+    Body(EntityId),
 }
 
 /// Answers rows.
@@ -91,8 +93,8 @@ impl<'a> Engine<'a> {
 
     fn certified(&self, id: EntityId) -> Certified {
         match self.target {
-            Target::Nearest => self.of_model,
-            _ => self.of_entity[&id],
+            Target::Nearest | Target::Body(_) => self.of_model,
+            Target::Entity(_) | Target::Named => self.of_entity[&id],
         }
     }
 
@@ -113,13 +115,14 @@ impl<'a> Engine<'a> {
         let points: Vec<DVec3> = asked.iter().flatten().map(|asked| asked.point).collect();
         let mut nearest = match self.target {
             Target::Nearest => self.model.nearest_all(&points, &self.options).into_iter(),
-            _ => Vec::new().into_iter(),
+            Target::Body(body) => self.of_body(body, &points).into_iter(),
+            Target::Entity(_) | Target::Named => Vec::new().into_iter(),
         };
         let mut askings = Vec::with_capacity(rows.len());
         for (row, asked) in rows.iter().zip(asked) {
             askings.push(asked.and_then(|asked| {
                 let answer = match self.target {
-                    Target::Nearest => nearest.next().unwrap_or(Ok(None)),
+                    Target::Nearest | Target::Body(_) => nearest.next().unwrap_or(Ok(None)),
                     Target::Entity(id) => self.project(id, asked.point, memory),
                     Target::Named => asked.entity.map_or(Ok(None), |id| self.project(id, asked.point, memory)),
                 };
@@ -136,6 +139,25 @@ impl<'a> Engine<'a> {
         let foot = entity.prepared().project_near(&query, hint, &mut memory.scratch);
         memory.hint = foot.map(|foot| (id, foot.point)).or(memory.hint);
         Ok(foot.map(|foot| (id, foot)))
+    }
+
+    fn of_body(&self, body: EntityId, points: &[DVec3]) -> Vec<Result<Answer, QueryError>> {
+        if !self.model.body(body).is_some_and(Body::is_closed) {
+            return self.model.nearest_of_all(body, points, &self.options);
+        }
+        let signed = self.model.signed_distance_all(body, points, &self.options).into_iter();
+        let answer = |(signed, point): (Result<BodyFoot, BodyError>, &DVec3)| match signed {
+            Ok(BodyFoot { face, foot, signed_distance, .. }) => {
+                Ok(Some((face, FootPoint { signed_distance: Some(signed_distance), ..foot })))
+            }
+            Err(BodyError::Query(error)) => Err(error),
+            // the faces do not tell the side
+            Err(_) => {
+                let nearest = self.model.nearest_of(body, *point, &self.options)?;
+                Ok(nearest.map(|(face, foot)| (face, FootPoint { signed_distance: None, ..foot })))
+            }
+        };
+        signed.zip(points).map(answer).collect()
     }
 
     fn refused(&self, row: Row<'_>, point: DVec3, error: &QueryError) -> Complaint {
@@ -169,7 +191,7 @@ impl<'a> Engine<'a> {
             Target::Named => {
                 Named::Written(self.layout.columns.entity.and_then(|at| row.field(at)).unwrap_or_default())
             }
-            Target::Nearest => Named::Id(answer.map(|(id, _)| id)),
+            Target::Nearest | Target::Body(_) => Named::Id(answer.map(|(id, _)| id)),
         };
         self.layout.row(&mut answers.text, row, named, answer.as_ref().map(|(_, foot)| foot));
     }

@@ -5,6 +5,8 @@ mod page;
 
 use std::fmt::Write as _;
 
+use perpend::{DVec3, Frame, Model, Plane, Shell};
+
 use crate::workshop::{Run, Workshop};
 use page::Page;
 
@@ -123,6 +125,36 @@ fn without_an_entity_the_nearest_answers_and_curves_have_no_side() {
     assert_eq!(page.doubles("/points/deviation"), [0.5, -1.0]);
     assert_eq!(page.bytes("/points/flags"), [1, 0]);
     assert!(page.text.contains("1 entity is nearest to no point."));
+}
+
+/// A cube of size 2 about the origin, as a closed body: entities 1 to 6, and body 7.
+fn cube() -> Workshop {
+    let mut model = Model::new();
+    let faces = [DVec3::X, DVec3::Y, DVec3::Z].into_iter().flat_map(|axis| [axis, -axis]).map(|axis| {
+        let frame = Frame::about(axis, axis).unwrap();
+        model.insert("side", Plane::new(frame, (-1.0, 1.0), (-1.0, 1.0)).unwrap()).unwrap()
+    });
+    let faces = faces.collect();
+    model.insert_body("cube", vec![Shell { faces, closed: true }]).unwrap();
+    let workshop = Workshop::new();
+    model.write(workshop.path("model.ron")).unwrap();
+    workshop
+}
+
+#[test]
+fn a_closed_body_tells_inside_from_outside_beyond_its_edges_too() {
+    let workshop = cube();
+    let points = "x,y,z\n0.5,0,0\n4,5,0.5\n2,3,3\n0,0,1.25\n";
+    let deviations = [-0.5, 5.0, 3.0, 0.25];
+    for options in [&["--body", "7"][..], &[]] {
+        report(&workshop, points, options).ends(0, "");
+        let page = Page::new(workshop.read("report.html"));
+        assert_eq!(page.doubles("/points/deviation"), deviations, "{options:?}");
+        assert_eq!((page.figure("without a side"), page.scene()["faces"].as_array().unwrap().len()), ("0", 6));
+    }
+    report(&workshop, points, &["--body", "3"]).ends(1, "model.ron: no body has the id 3; its bodies are 7");
+    report(&workshop, points, &["--body", "7", "--entity", "1"]).ends(2, "cannot be used with");
+    report(&workshop, "entity,x,y,z\n1,0,0,0\n", &["--body", "7"]).ends(2, "leave out one of them");
 }
 
 #[test]
