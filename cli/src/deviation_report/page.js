@@ -110,7 +110,8 @@
 
   // ---- the camera: a turntable about z, without perspective, so that lengths compare
 
-  const camera = { azimuth: -60, elevation: 28, target: [0, 0, 0], half: 1 };
+  // Until somebody moves it, it fits the part into whatever size the window has.
+  const camera = { azimuth: -60, elevation: 28, target: [0, 0, 0], half: 1, fits: true };
   const axes = () => {
     const [a, e] = [camera.azimuth, camera.elevation].map((degrees) => degrees * Math.PI / 180);
     const [ca, sa, ce, se] = [Math.cos(a), Math.sin(a), Math.cos(e), Math.sin(e)];
@@ -119,6 +120,7 @@
   const dot = (a, b) => a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
   const aspect = () => canvas.clientWidth / Math.max(1, canvas.clientHeight);
   const fit = () => {
+    camera.fits = true;
     const { right, up } = axes();
     const low = [Infinity, Infinity];
     const high = [-Infinity, -Infinity];
@@ -137,17 +139,20 @@
     camera.target = [0, 1, 2].map((k) => (box.min[k] + box.max[k]) / 2 + aside * right[k]);
   };
   const pan = (dx, dy) => {
+    camera.fits = false;
     const { right, up } = axes();
     const unit = 2 * camera.half / canvas.clientHeight;
     camera.target = camera.target.map((t, k) => t - unit * (dx * right[k] - dy * up[k]));
   };
   const turn = (dx, dy) => {
+    camera.fits = false;
     camera.azimuth = (camera.azimuth - dx) % 360;
     camera.elevation = Math.min(90, Math.max(-90, camera.elevation + dy));
   };
   // What lies under the pointer stays there.
   const zoom = (factor, x = canvas.clientWidth / 2, y = canvas.clientHeight / 2) => {
     const before = camera.half;
+    camera.fits = false;
     camera.half = Math.min(20 * reach, Math.max(1e-6 * reach, camera.half * factor));
     const moved = 1 - camera.half / before;
     const [dx, dy] = [x - canvas.clientWidth / 2, y - canvas.clientHeight / 2];
@@ -651,13 +656,8 @@
   sizeInput.value = Math.min(8, Math.max(3, 0.45 * Math.sqrt(area / Math.max(1, count))));
   message.hidden = true;
   ["tools", "keys"].forEach((id) => { byId(id).hidden = false; });
-  let wasFitted = false;
   new ResizeObserver(() => {
-    // a window that was hidden has no size to fit to
-    if (!wasFitted && canvas.clientWidth > 0) {
-      fit();
-      wasFitted = true;
-    }
+    if (camera.fits) fit();
     draw();
   }).observe(canvas);
   fit();
