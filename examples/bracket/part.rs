@@ -31,7 +31,7 @@ const TOP: f64 = 46.0;
 const BLOCK: [(f64, f64); 2] = [(-46.0, -12.0), (-28.0, 28.0)];
 
 /// The model: one closed body.
-pub(super) fn model() -> Outcome<Model> {
+pub(crate) fn model() -> Outcome<Model> {
     let mut builder = Builder::default();
     let plate = plate(&mut builder)?;
     let holes = holes(&mut builder)?;

@@ -23,7 +23,7 @@ const DENT: (DVec3, f64, f64) = (DVec3::new(-2.0, -30.0, 12.0), -0.12, 7.0);
 /// `x,y,z,made`: points on all that is seen from above, and by how much the surface is off where each was taken, noise included.
 ///
 /// Rows stand face by face. Points beside an edge may be nearer to the face beyond it than to their own.
-pub(super) fn scan(model: &Model) -> String {
+pub(crate) fn scan(model: &Model) -> String {
     let mut random = Random::new(2015);
     let mut text = String::from("x,y,z,made\n");
     for body in model.bodies() {
