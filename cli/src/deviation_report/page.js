@@ -342,8 +342,8 @@
   const look = () => {
     const dark = !printing && getComputedStyle(root).getPropertyValue("--dark").trim() === "1";
     return dark
-      ? { part: [0.60, 0.64, 0.70], marked: [0.45, 0.68, 0.95], edge: [0.06, 0.07, 0.09], bare: [0.75, 0.79, 0.84], rim: [0.80, 0.83, 0.87], ring: [1, 1, 1] }
-      : { part: [0.72, 0.75, 0.80], marked: [0.40, 0.62, 0.90], edge: [0.13, 0.16, 0.20], bare: [0.13, 0.16, 0.20], rim: [0.10, 0.12, 0.15], ring: [0, 0, 0] };
+      ? { part: [0.60, 0.64, 0.70], marked: [0.66, 0.54, 0.88], edge: [0.06, 0.07, 0.09], bare: [0.75, 0.79, 0.84], rim: [0.80, 0.83, 0.87], ring: [1, 1, 1] }
+      : { part: [0.72, 0.75, 0.80], marked: [0.68, 0.56, 0.90], edge: [0.13, 0.16, 0.20], bare: [0.13, 0.16, 0.20], rim: [0.10, 0.12, 0.15], ring: [0, 0, 0] };
   };
   const ratio = () => canvas.width / Math.max(1, canvas.clientWidth);
   const setCamera = (program) => {
