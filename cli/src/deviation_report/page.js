@@ -254,12 +254,13 @@
     );
     const pointVertex = (paint) => `${common}
       uniform float raised;  // towards the eye: a point just behind its surface is seen too
+      uniform float apart;   // depths are told apart by so much: of points in one place the later one is seen, and not the highest
       uniform float size;
       in vec3 position;
       ${paint ? "in vec4 tint; out vec3 colour;" : "flat out uint name;"}
       void main() {
         vec3 p = turning * (position - target);
-        p.z += raised;
+        p.z = (floor(p.z / apart) + 1.0) * apart + raised;
         gl_Position = placed(p);
         gl_PointSize = size;
         ${paint ? "colour = tint.rgb;" : "name = uint(gl_VertexID) + 1u;"}
@@ -355,6 +356,7 @@
     gl.uniform1f(program.uniform("depth"), 1.1 * (reach + Math.hypot(...camera.target)));
   };
   const unit = () => 2 * camera.half / Math.max(1, canvas.height);
+  const depthStep = Math.min(0.02 * reach, 2 * scene.limit);
   const raised = () => Math.min(0.02 * reach, 1.25 * scene.limit) + 3 * unit();
 
   const drawPart = (colour, marked) => {
@@ -398,6 +400,7 @@
       setCamera(made.point);
       gl.bindVertexArray(made.pointArray);
       const size = Number(sizeInput.value) * ratio();
+      gl.uniform1f(made.point.uniform("apart"), depthStep);
       gl.uniform1f(made.point.uniform("raised"), raised());
       gl.uniform1f(made.point.uniform("size"), size);
       gl.uniform1f(made.point.uniform("ring"), 0);
@@ -462,6 +465,7 @@
     }
     setCamera(made.name);
     gl.bindVertexArray(made.nameArray);
+    gl.uniform1f(made.name.uniform("apart"), depthStep);
     gl.uniform1f(made.name.uniform("raised"), raised());
     gl.uniform1f(made.name.uniform("size"), Number(sizeInput.value) * ratio());
     gl.drawArrays(gl.POINTS, 0, count);
