@@ -12,6 +12,9 @@ use crate::model::Model;
 /// An entity and its nearest point.
 pub(crate) type Found = (EntityId, FootPoint);
 
+/// A box beyond this share of the best distance, squared, may hold an entity that ties, and hardly one that is proven farther.
+const TIGHT: f64 = 0.999;
+
 /// Entities that are asked together.
 #[derive(Debug, Clone)]
 pub(crate) struct Group {
@@ -60,12 +63,16 @@ impl Group {
         let mut found = asked.visit(first, scratch);
         // entities whose bound does not say that they are beyond the limit
         let mut open: Vec<u32> = (found.1.lower_bound <= limit).then_some(first).into_iter().collect();
-        for candidate in self.candidates(model, query.point, found.1.distance, |item| item != first) {
-            if candidate.distance_squared >= square_above(found.1.distance) {
+        let candidates = self.candidates(model, query.point, found.1.distance, |item| item != first);
+        for (k, candidate) in candidates.into_iter().enumerate() {
+            let best = found.1.distance;
+            if candidate.distance_squared >= square_above(best) {
                 break; // the others are farther still
             }
-            // that an entity is farther is cheaper to prove than where it is nearest
-            if !asked.may_be_within(candidate.item, found.1.distance, scratch) {
+            // That an entity is farther is cheaper to prove than where it is nearest. The nearest box is likely to hold the nearest
+            // entity, and one at the best distance to tie with it: those are asked at once.
+            let is_promising = k == 0 || candidate.distance_squared > TIGHT * best * best;
+            if !is_promising && !asked.may_be_within(candidate.item, best, scratch) {
                 continue;
             }
             let other = asked.visit(candidate.item, scratch);

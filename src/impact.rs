@@ -5,6 +5,7 @@ use perpend_knowledge::{MakingError, Relation};
 
 use crate::dependence::Dependence;
 use crate::edit::EditError;
+use crate::entity::Entity;
 use crate::model::Model;
 use crate::standing::Standing;
 
@@ -23,7 +24,7 @@ pub struct Impact {
 #[derive(Debug, Clone, PartialEq)]
 #[non_exhaustive]
 pub enum Effect {
-    /// It is made anew.
+    /// It is made anew, or, trimming another entity, follows that.
     Rebuilt,
     /// Its definition was replaced by hand after it had been made. It is kept, and may no longer fit.
     Overridden,
@@ -58,12 +59,7 @@ impl Model {
                 continue;
             }
             let entity = &self.entities[at];
-            let effect = match Standing::of(entity, self) {
-                Standing::Made => Effect::Rebuilt,
-                Standing::Overridden => Effect::Overridden,
-                Standing::Reference(why) => Effect::Kept { why },
-                Standing::Unmade => Effect::Refers,
-            };
+            let effect = if entity.carrier().is_some() { Effect::Rebuilt } else { self.effect(entity) };
             changes[at] = effect == Effect::Rebuilt;
             touched.push(Impact { id: entity.id, because: self.because(at, &changes), effect });
         }
@@ -77,16 +73,31 @@ impl Model {
         Ok(touched)
     }
 
+    /// What an edit of what an entity is made of does to it.
+    fn effect(&self, entity: &Entity) -> Effect {
+        match Standing::of(entity, self) {
+            Standing::Made => Effect::Rebuilt,
+            Standing::Overridden => Effect::Overridden,
+            Standing::Reference(why) => Effect::Kept { why },
+            Standing::Unmade => Effect::Refers,
+        }
+    }
+
     /// What the changing entities to which one is related are to it.
     fn because(&self, at: usize, changes: &[bool]) -> Vec<(Relation, EntityId)> {
-        let Some(record) = &self.entities[at].record else { return Vec::new() };
+        let entity = &self.entities[at];
         let is_changing = |id: &EntityId| self.index.get(id).is_some_and(|input| *input != at && changes[*input]);
-        let stated = record.relationships.iter().map(|edge| (edge.kind.clone(), edge.target));
+        let record = entity.record.iter();
+        let stated = record.flat_map(|record| &record.relationships).map(|edge| (edge.kind.clone(), edge.target));
         // inputs to which no relationship is stated: what the operation makes of them
-        let steps = record.making().map_or_else(Vec::new, |making| making.steps.to_vec());
+        let making = entity.record.as_ref().and_then(|record| record.making());
+        let steps = making.map_or_else(Vec::new, |making| making.steps.to_vec());
         let implied = steps.iter().flat_map(|step| step.relationships()).map(|edge| (edge.kind, edge.target));
+        let carrier = entity.carrier().map(|carrier| (Relation::PartOf, carrier));
+        let edges = entity.trimming().into_iter().flat_map(|trimming| trimming.edges());
+        let trimmed = carrier.into_iter().chain(edges.map(|edge| (Relation::Boundary, edge)));
         let mut because: Vec<(Relation, EntityId)> = Vec::new();
-        for (relation, target) in stated.chain(implied) {
+        for (relation, target) in stated.chain(implied).chain(trimmed) {
             if is_changing(&target) && !because.contains(&(relation.clone(), target)) {
                 because.push((relation, target));
             }

@@ -10,7 +10,7 @@ use perpend_knowledge::{
 };
 
 use crate::dependence::{Dependence, shown};
-use crate::entity::Part;
+use crate::entity::{Entity, Part};
 use crate::model::Model;
 use crate::referent::Referent;
 use crate::standing::Standing;
@@ -327,10 +327,7 @@ impl Model {
     /// as it was then, bit for bit.
     pub fn edit(&mut self, id: EntityId, operation: impl Into<Operation>) -> Result<Vec<EntityId>, RebuildError> {
         let operation = operation.into();
-        let entity = self.entity(id).ok_or(RebuildError::UnknownEntity { id })?;
-        if let Some(carrier) = entity.carrier() {
-            return Err(RebuildError::FollowsCarrier { id, carrier });
-        }
+        let entity = self.not_following(id)?;
         match Standing::of(entity, self) {
             Standing::Made => {}
             Standing::Overridden => return Err(RebuildError::Overridden { id }),
@@ -365,7 +362,7 @@ impl Model {
         operation: impl Into<Operation>,
         inputs: &[EntityId],
     ) -> Result<Vec<EntityId>, RebuildError> {
-        let entity = self.entity(id).ok_or(RebuildError::UnknownEntity { id })?;
+        let entity = self.not_following(id)?;
         let record = entity.record.clone().unwrap_or_default();
         let steps = vec![Intent::new(operation, inputs)];
         let first = record.making().and_then(|making| making.first);
@@ -379,17 +376,23 @@ impl Model {
     ///
     /// As [`edit`](Self::edit), but for a definition that was replaced by hand, which is lost.
     pub fn rebuild(&mut self, id: EntityId) -> Result<Vec<EntityId>, RebuildError> {
-        let entity = self.entity(id).ok_or(RebuildError::UnknownEntity { id })?;
+        let entity = self.not_following(id)?;
         let record = entity.record.clone().unwrap_or_default();
         let making = record.making().ok_or(RebuildError::NotMade { id })?;
         self.make_anew(id, &record, &making)
     }
 
+    /// An entity that is made by itself, and not when its carrier is.
+    fn not_following(&self, id: EntityId) -> Result<&Entity, RebuildError> {
+        let entity = self.entity(id).ok_or(RebuildError::UnknownEntity { id })?;
+        match entity.carrier() {
+            Some(carrier) => Err(RebuildError::FollowsCarrier { id, carrier }),
+            None => Ok(entity),
+        }
+    }
+
     fn make_anew(&mut self, id: EntityId, record: &Record, making: &Making<'_>) -> Result<Vec<EntityId>, RebuildError> {
         let at = self.index[&id];
-        if let Some(carrier) = self.entities[at].carrier() {
-            return Err(RebuildError::FollowsCarrier { id, carrier });
-        }
         self.check_inputs(id, making.steps.iter().flat_map(|step| &step.inputs))?;
         let mut staged = Staged::new(self);
         let built = making.run(&staged).map_err(|error| failed(id, id, error))?;

@@ -277,6 +277,11 @@ fn a_face_with_a_round_hole_is_no_nearer_than_its_rim() {
     let plate = planar(&mut model, DVec3::ZERO, [DVec3::X, DVec3::Y], loops, false);
     let foot = model.project(plate, DVec3::new(0.25, 0.0, 1.0)).unwrap();
     assert!((foot.distance - 1.25).abs() < 1e-9, "{foot:?}");
+    // the last corner of one loop is not the first point of the next
+    for corner in [DVec2::new(-2.0, -2.0), DVec2::new(2.0, -2.0), DVec2::new(2.0, 2.0), DVec2::new(-2.0, 2.0)] {
+        let foot = model.project(plate, 2.0 * corner.extend(0.5)).unwrap();
+        assert!((foot.point - corner.extend(0.0)).length() < 1e-12 && foot.gap() < 1e-8, "{foot:?}");
+    }
     let triangle = vec![polygon(true, &[DVec2::ZERO, DVec2::X, DVec2::Y])];
     let gusset = planar(&mut model, DVec3::ZERO, [DVec3::X, DVec3::Y], triangle, true);
     let foot = model.project(gusset, DVec3::new(1.0, 1.0, 0.0)).unwrap();

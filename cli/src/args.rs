@@ -338,9 +338,15 @@ pub(crate) struct ProjectArguments {
     pub(crate) trust: TrustArguments,
     /// The points (CSV); `-` is standard input
     pub(crate) points: PathBuf,
-    /// Project all points onto this entity
+    /// Project all points onto this entity, or onto the nearest face of this body
     #[arg(long, value_name = "ID", value_parser = entity_id)]
     pub(crate) entity: Option<EntityId>,
+    /// Answer with the N nearest entities of the model, one row each, ranked in the column `rank`
+    #[arg(long, value_name = "N", value_parser = value_parser!(u32).range(1..), conflicts_with_all = ["entity", "within"])]
+    pub(crate) k: Option<u32>,
+    /// Answer with all entities of the model within this distance, in the model's unit, one row each, ranked in the column `rank`
+    #[arg(long, value_name = "R", value_parser = length, allow_negative_numbers = true, conflicts_with = "entity")]
+    pub(crate) within: Option<f64>,
     /// The solver; without it, the one that fits the entity
     #[arg(long, value_parser = method())]
     pub(crate) method: Option<Method>,
@@ -354,7 +360,8 @@ pub(crate) struct ProjectArguments {
     /// Answer only where the nearest point is at most this far, in the model's unit; other rows get empty answers
     #[arg(long, value_name = "D", value_parser = length, allow_negative_numbers = true)]
     pub(crate) max_distance: Option<f64>,
-    /// Add the columns `nx,ny,nz,signed_distance`: a surface's unit normal, and the distance with its sign
+    /// Add the columns `nx,ny,nz,signed_distance`: a surface's outward unit normal, and the distance with its sign; of a
+    /// closed body, negative inside
     #[arg(long)]
     pub(crate) normals: bool,
     /// The file for the answers, written whole or not at all; without it, or with `-`, standard output
@@ -399,20 +406,22 @@ pub(crate) struct ReportArguments {
 }
 
 const ABOUT_ANSWERS: &str = "\
-Answers, one row for each row of POINTS, in order:
-  entity          the entity's id
+Answers, one row for each row of POINTS, in order; with --k and --within, as many as entities answer, the nearest
+first, and one with empty answers where none does:
+  entity          the entity's id; of a body, that of its nearest face
   x,y,z           the point, as it was written
   u,v             the parameter of the nearest point; v is empty for a curve
   fx,fy,fz        the nearest point: the entity evaluated at (u, v)
   distance        from the point to the nearest point: never below the true distance
   lower_bound     proven: no point of the entity is nearer than this. The true distance lies between
                   lower_bound and distance
-  place           interior end edge corner seam pole cusp crease
+  place           interior end edge corner seam pole cusp crease; of a trimmed face also trim-edge and vertex
   multiplicity    unique, tied (another point is as near) or continuum (a whole curve or region is)
   method          the solver that proposed the answer
+  rank            with --k and --within: 1 for the nearest entity, 2 for the next, …
   nx,ny,nz,signed_distance
                   with --normals; empty for a curve and where the surface has no normal. The sign is
-                  positive on the normal's side
+                  positive on the normal's side; of a closed body, positive outside and negative inside
 All lengths are in the model's unit. An input column with the name of an output column comes out as in_NAME.
 
 A bad row keeps its line, with empty answers, and is named on standard error; the other rows are answered, and the

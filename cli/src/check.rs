@@ -3,7 +3,7 @@
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-use perpend::{Cleaning, Definition, Direction, Doubt, Entity, Model};
+use perpend::{Body, Cleaning, Definition, Direction, Doubt, Entity, Model};
 
 use crate::args::CheckArguments;
 use crate::error::CommandError;
@@ -18,6 +18,9 @@ pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> 
     for entity in model.entities() {
         describe(&mut text, &model, entity, model.units().symbol());
     }
+    for body in model.bodies() {
+        let _ = writeln!(text, "{:>6}  {:?}: {}", body.id(), body.name(), solid(body));
+    }
     let count = |count: usize, noun| counted(count as u64, noun);
     let _ = write!(
         text,
@@ -28,6 +31,12 @@ pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> 
         rounded(model.size()),
         model.units().symbol(),
     );
+    let bodies = match model.bodies().len() {
+        0 => String::new(),
+        1 => "; 1 body".to_owned(),
+        bodies => format!("; {bodies} bodies"),
+    };
+    text.push_str(&bodies);
     if stale > 0 {
         let _ = write!(
             text,
@@ -42,7 +51,7 @@ pub(crate) fn run(arguments: &CheckArguments) -> Result<ExitCode, CommandError> 
 
 /// A line for the entity, and one for each thing to know about it.
 fn describe(text: &mut String, model: &Model, entity: &Entity, unit: &str) {
-    let _ = writeln!(text, "{:>6}  {:?}: {}", entity.id(), entity.name(), shape(entity.definition()));
+    let _ = writeln!(text, "{:>6}  {:?}: {}", entity.id(), entity.name(), form(entity));
     for direction in clamped(entity) {
         let _ = writeln!(
             text,
@@ -65,6 +74,34 @@ fn describe(text: &mut String, model: &Model, entity: &Entity, unit: &str) {
     if !stale.is_empty() {
         let _ = writeln!(text, "        stale knowledge, computed from another definition: {}", stale.join(", "));
     }
+}
+
+/// What an entity is, in words: its definition, and what trims it.
+pub(crate) fn form(entity: &Entity) -> String {
+    let shape = shape(entity.definition());
+    match entity.trimming() {
+        None => shape,
+        Some(trimming) => {
+            let of = entity.carrier().map_or_else(String::new, |id| format!(" of entity {id}"));
+            let curves = trimming.loops().iter().map(|one| one.curves.len()).sum::<usize>();
+            let (loops, curves) = (counted(trimming.loops().len() as u64, "loop"), counted(curves as u64, "p-curve"));
+            let reversed = if trimming.reversed() { ", reversed" } else { "" };
+            format!("{shape}{of}, trimmed by {loops} of {curves}{reversed}")
+        }
+    }
+}
+
+/// What a body is, in words.
+pub(crate) fn solid(body: &Body) -> String {
+    let shells: Vec<String> = body
+        .shells()
+        .iter()
+        .map(|shell| {
+            let closed = if shell.closed { "a closed" } else { "an open" };
+            format!("{closed} shell of {}", counted(shell.faces.len() as u64, "face"))
+        })
+        .collect();
+    format!("body of {}", shells.join(" and "))
 }
 
 /// What a definition is, in words.

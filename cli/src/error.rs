@@ -37,10 +37,8 @@ pub(crate) enum CommandError {
     StandardOutput(io::Error),
     #[error("cannot start the worker threads: {0}; ask for fewer with --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    #[error("{name} has a column `entity`, and --entity names one too: leave out one of them")]
-    TwoEntities { name: String },
-    #[error("{name} has a column `entity`, and --body asks a body: leave out one of them")]
-    EntityAndBody { name: String },
+    #[error("{name} has a column `entity`, and --{option} says otherwise: leave out one of them")]
+    TwoEntities { name: String, option: &'static str },
     #[error("{} is the model; it would be lost: give another file to -o", path.display())]
     OutputIsModel { path: PathBuf },
     #[error("{} is an input; it would be lost: give another file to -o", path.display())]
@@ -76,7 +74,6 @@ impl CommandError {
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::TwoEntities { .. }
-            | Self::EntityAndBody { .. }
             | Self::OutputIsModel { .. }
             | Self::OutputIsInput { .. }
             | Self::UnknownFormat { .. }

@@ -4,7 +4,7 @@ use std::collections::HashSet;
 use std::io::{self, Write};
 use std::process::ExitCode;
 
-use perpend::{AtomicFile, Definition, Entity, EntityId, Model};
+use perpend::{AtomicFile, Body, Definition, Entity, EntityId, Model};
 use perpend_step::WriteOptions;
 use perpend_tessellation::obj::ObjWriter;
 use perpend_tessellation::{Limits, Mesh, Polyline, polyline, stl, tessellate};
@@ -189,8 +189,10 @@ impl Job<'_> {
             None => self.model.entities().iter().collect(),
             Some(ids) => ids.iter().filter_map(|id| self.model.entity(*id)).collect(),
         };
+        let is_asked = |body: &&Body| self.arguments.entity.is_none_or(|id| id == body.id());
+        let bodies: Vec<&Body> = self.model.bodies().iter().filter(is_asked).collect();
         let count = entities.len();
-        put(file, |out| out.write_all(show::json(&entities).as_bytes()))?;
+        put(file, |out| out.write_all(show::json(&entities, &bodies).as_bytes()))?;
         self.done(&if count == 1 { "1 entity".to_owned() } else { format!("{count} entities") });
         Ok(())
     }

@@ -2,7 +2,7 @@
 
 use std::process::ExitCode;
 
-use perpend::Entity;
+use perpend::{Body, Entity};
 
 use crate::args::LearnArguments;
 use crate::error::CommandError;
@@ -14,7 +14,8 @@ pub(crate) fn run(arguments: &LearnArguments) -> Result<ExitCode, CommandError> 
     model.write(&arguments.output)?;
     if arguments.json {
         let entities: Vec<&Entity> = model.entities().iter().collect();
-        report::answer(show::json(&entities).as_bytes())?;
+        let bodies: Vec<&Body> = model.bodies().iter().collect();
+        report::answer(show::json(&entities, &bodies).as_bytes())?;
     }
     report::say(format_args!(
         "{}: learned of {} of {}",

@@ -78,7 +78,8 @@ pub(crate) fn restore(arguments: &RestoreArguments) -> Result<ExitCode, CommandE
 /// The entities that a command is to work on.
 fn asked(path: &Path, model: &Model, entity: Option<EntityId>) -> Result<Vec<EntityId>, CommandError> {
     match entity {
-        None => Ok(model.entities().iter().map(Entity::id).collect()),
+        // faces that trim other entities follow these
+        None => Ok(model.entities().iter().filter(|one| one.carrier().is_none()).map(Entity::id).collect()),
         Some(id) if model.entity(id).is_some() => Ok(vec![id]),
         Some(id) => Err(CommandError::unknown_entity(path.to_owned(), model, id)),
     }

@@ -3,13 +3,13 @@
 use std::fmt::Write as _;
 use std::process::ExitCode;
 
-use perpend::{Aabb, DVec3, Definition, Direction, Entity, EntityId, Model, Record};
+use perpend::{Aabb, Body, DVec3, Definition, Direction, Entity, EntityId, Model, Record, Shell};
 use serde::Serialize;
 
 use crate::args::ShowArguments;
-use crate::check::shape;
+use crate::check::{form, solid};
 use crate::error::CommandError;
-use crate::report::{self, rounded};
+use crate::report::{self, counted, rounded};
 
 pub(crate) fn run(arguments: &ShowArguments) -> Result<ExitCode, CommandError> {
     let mut model = arguments.trust.read(&arguments.model)?;
@@ -21,21 +21,26 @@ pub(crate) fn run(arguments: &ShowArguments) -> Result<ExitCode, CommandError> {
             Some(id) if model.entity(id).is_some() => {
                 model.learn(id).expect("the model has the entity");
             }
-            Some(_) => {} // told below
+            Some(_) => {} // a body, or told below
         }
     }
-    let entities: Vec<&Entity> = match arguments.entity {
-        None => model.entities().iter().collect(),
-        Some(id) => {
-            vec![model.entity(id).ok_or_else(|| CommandError::unknown_entity(arguments.model.clone(), &model, id))?]
-        }
-    };
+    let is_shown = |id: EntityId| arguments.entity.is_none_or(|asked| asked == id);
+    let entities: Vec<&Entity> = model.entities().iter().filter(|entity| is_shown(entity.id())).collect();
+    let bodies: Vec<&Body> = model.bodies().iter().filter(|body| is_shown(body.id())).collect();
+    if let Some(id) = arguments.entity
+        && entities.is_empty()
+        && bodies.is_empty()
+    {
+        return Err(CommandError::unknown_entity(arguments.model.clone(), &model, id));
+    }
     let text = if arguments.json {
-        json(&entities)
+        json(&entities, &bodies)
     } else if let (Some(_), [entity]) = (arguments.entity, entities.as_slice()) {
         details(&model, entity)
+    } else if let (Some(_), [body]) = (arguments.entity, bodies.as_slice()) {
+        body_details(body)
     } else {
-        table(&model, &entities)
+        table(&model, &entities, &bodies)
     };
     report::answer(text.as_bytes())?;
     Ok(ExitCode::SUCCESS)
@@ -50,15 +55,44 @@ struct Listing<'a> {
 struct EntityForm<'a> {
     id: EntityId,
     name: &'a str,
-    definition: DefinitionForm,
+    #[serde(skip_serializing_if = "Option::is_none")]
+    colour: Option<[f64; 3]>,
+    definition: DefinitionForm<'a>,
     knowledge: Option<&'a Record>,
 }
 
+/// What an entity or a body is.
 #[derive(Serialize)]
-struct DefinitionForm {
-    kind: &'static str,
-    degree: PerDirection,
-    points: PerDirection,
+#[serde(untagged)]
+enum DefinitionForm<'a> {
+    Plain {
+        kind: &'static str,
+        degree: PerDirection,
+        points: PerDirection,
+    },
+    Trimmed {
+        kind: &'static str,
+        /// The entity that it trims; none: the surface is its own.
+        surface: Option<EntityId>,
+        degree: PerDirection,
+        points: PerDirection,
+        reversed: bool,
+        tolerance: f64,
+        loops: Vec<LoopForm>,
+    },
+    Body {
+        kind: &'static str,
+        shells: &'a [Shell],
+    },
+}
+
+#[derive(Serialize)]
+struct LoopForm {
+    outer: bool,
+    /// How many p-curves it has.
+    curves: usize,
+    /// The curves in space that follow them.
+    edges: Vec<EntityId>,
 }
 
 /// A number of a curve, or one for each direction of a surface.
@@ -69,25 +103,31 @@ enum PerDirection {
     Surface(usize, usize),
 }
 
-/// The entities with their records, for programs.
-pub(crate) fn json(entities: &[&Entity]) -> String {
-    let entities = entities
-        .iter()
-        .map(|entity| EntityForm {
-            id: entity.id(),
-            name: entity.name(),
-            definition: definition(entity.definition()),
-            knowledge: entity.record(),
-        })
-        .collect();
+/// The entities with their records, and the bodies, for programs.
+pub(crate) fn json(entities: &[&Entity], bodies: &[&Body]) -> String {
+    let of_entities = entities.iter().map(|entity| EntityForm {
+        id: entity.id(),
+        name: entity.name(),
+        colour: entity.colour(),
+        definition: definition(entity),
+        knowledge: entity.record(),
+    });
+    let of_bodies = bodies.iter().map(|body| EntityForm {
+        id: body.id(),
+        name: body.name(),
+        colour: body.colour(),
+        definition: DefinitionForm::Body { kind: "Body", shells: body.shells() },
+        knowledge: None,
+    });
+    let entities = of_entities.chain(of_bodies).collect();
     let mut text =
         serde_json::to_string_pretty(&Listing { entities }).expect("a record is plain data with names for keys");
     text.push('\n');
     text
 }
 
-fn definition(definition: &Definition) -> DefinitionForm {
-    let (degree, points) = match definition {
+fn definition(entity: &Entity) -> DefinitionForm<'static> {
+    let (degree, points) = match &**entity.definition() {
         Definition::NurbsCurve(curve) => {
             (PerDirection::Curve(curve.degree()), PerDirection::Curve(curve.control_points().len()))
         }
@@ -96,11 +136,35 @@ fn definition(definition: &Definition) -> DefinitionForm {
             (PerDirection::Surface(p, q), PerDirection::Surface(surface.rows(), surface.columns()))
         }
     };
-    DefinitionForm { kind: definition.kind(), degree, points }
+    match entity.trimming() {
+        None => DefinitionForm::Plain { kind: kind(entity), degree, points },
+        Some(trimming) => DefinitionForm::Trimmed {
+            kind: kind(entity),
+            surface: entity.carrier(),
+            degree,
+            points,
+            reversed: trimming.reversed(),
+            tolerance: trimming.tolerance(),
+            loops: trimming
+                .loops()
+                .iter()
+                .map(|one| LoopForm {
+                    outer: one.outer,
+                    curves: one.curves.len(),
+                    edges: one.curves.iter().filter_map(|curve| curve.edge).collect(),
+                })
+                .collect(),
+        },
+    }
+}
+
+/// The kind's name, as files write it.
+fn kind(entity: &Entity) -> &'static str {
+    if entity.trimming().is_some() { "TrimmedSurface" } else { entity.definition().kind() }
 }
 
 /// One line for each entity.
-fn table(model: &Model, entities: &[&Entity]) -> String {
+fn table(model: &Model, entities: &[&Entity], bodies: &[&Body]) -> String {
     let size = format!("size/{}", model.units().symbol());
     let mut rows = vec![["id", "name", "kind", "degree", "points", "weights", &size, "knowledge"].map(str::to_owned)];
     rows.extend(entities.iter().map(|entity| {
@@ -115,13 +179,19 @@ fn table(model: &Model, entities: &[&Entity]) -> String {
         [
             entity.id().to_string(),
             format!("{:?}", entity.name()),
-            entity.definition().kind().to_owned(),
+            kind(entity).to_owned(),
             degree,
             points,
             weights.to_owned(),
             rounded(entity.definition().size()),
             known(entity),
         ]
+    }));
+    rows.extend(bodies.iter().map(|body| {
+        let faces = body.shells().iter().map(|shell| shell.faces.len()).sum::<usize>();
+        let none = || "-".to_owned();
+        let faces = counted(faces as u64, "face");
+        [body.id().to_string(), format!("{:?}", body.name()), "Body".to_owned(), none(), faces, none(), none(), none()]
     }));
     let mut widths = [0; 8];
     for row in &rows {
@@ -166,13 +236,26 @@ fn details(model: &Model, entity: &Entity) -> String {
     };
     line("id", entity.id().to_string());
     line("name", format!("{:?}", entity.name()));
-    line("definition", shape(definition));
+    line("definition", form(entity));
     match &**definition {
         Definition::NurbsCurve(curve) => line("domain", range(curve.domain())),
         Definition::NurbsSurface(surface) => {
             let [u, v] = [Direction::U, Direction::V].map(|direction| range(surface.domain(direction)));
             line("domain", format!("{u} x {v}"));
         }
+    }
+    if let Some(trimming) = entity.trimming() {
+        line("trim", format!("closed within {} {unit}", rounded(trimming.tolerance())));
+        for one in trimming.loops() {
+            let edges: Vec<String> =
+                one.curves.iter().filter_map(|curve| curve.edge).map(|id| id.to_string()).collect();
+            let edges = if edges.is_empty() { String::new() } else { format!(", edges {}", edges.join(", ")) };
+            let side = if one.outer { "outer" } else { "inner" };
+            line("", format!("{side} loop of {}{edges}", counted(one.curves.len() as u64, "p-curve")));
+        }
+    }
+    if let Some(colour) = entity.colour() {
+        line("colour", point(DVec3::from_array(colour)));
     }
     let Aabb { min, max } = definition.control_box();
     line("box", format!("{} to {} {unit}", point(min), point(max)));
@@ -187,6 +270,25 @@ fn details(model: &Model, entity: &Entity) -> String {
             let ron = ron::ser::to_string_pretty(record, ron::ser::PrettyConfig::default());
             line("knowledge", ron.expect("a record is plain data"));
         }
+    }
+    text
+}
+
+/// All of one body.
+fn body_details(body: &Body) -> String {
+    let mut text = String::new();
+    let mut line = |name: &str, value: String| {
+        let _ = writeln!(text, "{name:<12}{value}");
+    };
+    line("id", body.id().to_string());
+    line("name", format!("{:?}", body.name()));
+    line("definition", solid(body));
+    for Shell { faces, closed } in body.shells() {
+        let faces: Vec<String> = faces.iter().map(ToString::to_string).collect();
+        line(if *closed { "closed" } else { "open" }, format!("faces {}", faces.join(", ")));
+    }
+    if let Some(colour) = body.colour() {
+        line("colour", point(DVec3::from_array(colour)));
     }
     text
 }

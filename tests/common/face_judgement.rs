@@ -19,7 +19,7 @@ pub const FAR: f64 = 3e4;
 pub enum FaceFault {
     /// The bound lies above the distance of a real point of the face.
     FalseBound,
-    /// Another point is nearer by more than the gap.
+    /// Another point is nearer by more than the gap (far away: though the answer says that it is certified).
     WrongFoot,
     /// The foot's parameters lie outside the trims.
     OutsideTrims,
@@ -80,7 +80,7 @@ pub fn judge_on_face(
         && (side != Verdict::Beside || is_false_bound(foot.lower_bound, real + two_ulps(shape, [uv.x, uv.y]), size));
     let fault = if is_false {
         Some(FaceFault::FalseBound)
-    } else if foot.distance > real + gap + allowed {
+    } else if (certified || real <= FAR * size) && foot.distance > real + gap + allowed {
         Some(FaceFault::WrongFoot)
     } else if !is_inside {
         Some(FaceFault::OutsideTrims)

@@ -24,9 +24,9 @@ use crate::project::answer::Layout;
 use crate::project::complaints::Complaints;
 use crate::project::engine::{Engine, Target};
 use crate::project::output::Output;
-use crate::project::points::{Batch, Points};
+use crate::project::points::{Batch, Columns, Points};
 use crate::project::source::Source;
-use crate::project::{BATCH, is_same_file, progress, target};
+use crate::project::{BATCH, is_same_file, progress};
 use crate::report::{counted, say};
 
 /// The chord error, as a share of the size, where none is given: less than a pixel on a large screen.
@@ -73,26 +73,14 @@ fn survey(arguments: &ReportArguments, asked: Asked, model: &Model) -> Result<(S
     let bar = progress::bar(length, true);
     let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
     let columns = points.header().map_err(|problem| source.wrong(problem))?;
-    let target = match asked {
-        Asked::Entity(id) => target(Some(id), source, &columns)?,
-        Asked::Body(_) if columns.entity.is_some() => {
-            return Err(CommandError::EntityAndBody { name: source.to_string() });
-        }
-        Asked::Body(id) => Target::Body(id),
-        // the one body that the model is tells the sides better than its faces do
-        Asked::All => match (target(None, source, &columns)?, only_body(model)) {
-            (Target::Nearest, Some(body)) => Target::Body(body.id()),
-            (target, _) => target,
-        },
-    };
-    if let Target::Body(id) = target
-        && model.body(id).is_some_and(Body::is_closed)
+    let target = target(asked, source, &columns, model)?;
+    if let Target::Body { id, signed: true } = target
         && let Err(source @ BodyError::InsideOut { .. }) =
             model.signed_distance(id, DVec3::ZERO, &QueryOptions::default())
     {
         return Err(CommandError::Body { model: arguments.model.clone(), source });
     }
-    let layout = Layout { columns: &columns, normals: false };
+    let layout = Layout { columns: &columns, normals: false, ranks: false };
     let engine = Engine::new(model, target, QueryOptions::default(), layout);
     let mut complaints = Complaints::new(source, &bar);
     let mut survey = Survey::new(arguments.most_points as usize);
@@ -104,8 +92,10 @@ fn survey(arguments: &ReportArguments, asked: Asked, model: &Model) -> Result<(S
         }
         for (line, asking) in engine.ask(&batch).into_iter().flatten() {
             match asking {
-                Ok((asked, Some((id, foot)))) => survey.take(measured(line, asked.point, id, &foot, &engine)),
-                Ok((_, None)) => {} // no maximum distance was asked for
+                // one foot, since neither several were asked for nor a maximum distance
+                Ok((asked, feet)) => feet.iter().for_each(|(id, foot)| {
+                    survey.take(measured(line, asked.point, *id, foot, &engine));
+                }),
                 Err(complaint) => complaints.take(&complaint),
             }
         }
@@ -140,12 +130,28 @@ impl Asked {
     fn of(arguments: &ReportArguments, model: &Model) -> Result<Self, CommandError> {
         let path = || arguments.model.clone();
         match (arguments.entity, arguments.body) {
+            (Some(id), _) if model.body(id).is_some() => Ok(Self::Body(id)),
             (Some(id), _) if model.entity(id).is_none() => Err(CommandError::unknown_entity(path(), model, id)),
             (_, Some(id)) if model.body(id).is_none() => Err(CommandError::unknown_body(path(), model, id)),
             (Some(id), _) => Ok(Self::Entity(id)),
             (_, Some(id)) => Ok(Self::Body(id)),
             (None, None) => Ok(Self::All),
         }
+    }
+}
+
+/// What the rows are measured against.
+fn target(asked: Asked, source: Source<'_>, columns: &Columns, model: &Model) -> Result<Target, CommandError> {
+    let of_body = |body: &Body| Target::Body { id: body.id(), signed: body.is_closed() };
+    let twice = |option| Err(CommandError::TwoEntities { name: source.to_string(), option });
+    match (asked, columns.entity) {
+        (Asked::Entity(_), Some(_)) => twice("entity"),
+        (Asked::Body(_), Some(_)) => twice("body"),
+        (Asked::Entity(id), None) => Ok(Target::Entity(id)),
+        (Asked::Body(id), None) => Ok(model.body(id).map_or(Target::Nearest, of_body)),
+        (Asked::All, Some(_)) => Ok(Target::Named),
+        // the one body that the model is tells the sides better than its faces do
+        (Asked::All, None) => Ok(only_body(model).map_or(Target::Nearest, of_body)),
     }
 }
 

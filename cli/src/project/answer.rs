@@ -11,6 +11,9 @@ use crate::project::points::{Columns, Row};
 const ANSWER: [&str; 14] =
     ["entity", "x", "y", "z", "u", "v", "fx", "fy", "fz", "distance", "lower_bound", "place", "multiplicity", "method"];
 
+/// The column that several answers to a row add.
+const RANK: &str = "rank";
+
 /// The columns that normals add.
 const NORMALS: [&str; 4] = ["nx", "ny", "nz", "signed_distance"];
 
@@ -19,6 +22,16 @@ const NORMALS: [&str; 4] = ["nx", "ny", "nz", "signed_distance"];
 pub(crate) struct Layout<'a> {
     pub(crate) columns: &'a Columns,
     pub(crate) normals: bool,
+    /// Whether a row may have several answers.
+    pub(crate) ranks: bool,
+}
+
+/// An answer, and which one of its row's it is.
+#[derive(Debug, Clone, Copy)]
+pub(crate) struct Ranked<'a> {
+    /// From 1.
+    pub(crate) rank: usize,
+    pub(crate) foot: &'a FootPoint,
 }
 
 /// What stands in the column `entity`.
@@ -52,7 +65,8 @@ impl Layout<'_> {
     }
 
     /// The row of an answer; of none, with empty columns.
-    pub(crate) fn row(self, out: &mut Vec<u8>, row: Row<'_>, named: Named<'_>, foot: Option<&FootPoint>) {
+    pub(crate) fn row(self, out: &mut Vec<u8>, row: Row<'_>, named: Named<'_>, ranked: Option<Ranked<'_>>) {
+        let foot = ranked.map(|ranked| ranked.foot);
         match named {
             Named::Written(text) => field(out, text),
             Named::Id(Some(id)) => put(out, id),
@@ -65,15 +79,20 @@ impl Layout<'_> {
             Some(foot) => answer(out, foot),
             None => empty(out, ANSWER.len() - 4),
         }
+        if self.ranks {
+            match ranked {
+                Some(Ranked { rank, .. }) => put(out, rank),
+                None => empty(out, 1),
+            }
+        }
         if self.normals {
-            match foot.and_then(|foot| Some((foot.normal?, foot.signed_distance?))) {
-                Some((normal, signed_distance)) => {
-                    for x in normal.to_array() {
-                        number(out, x);
-                    }
-                    number(out, signed_distance);
-                }
-                None => empty(out, NORMALS.len()),
+            match foot.and_then(|foot| foot.normal) {
+                Some(normal) => normal.to_array().into_iter().for_each(|x| number(out, x)),
+                None => empty(out, NORMALS.len() - 1),
+            }
+            match foot.and_then(|foot| foot.signed_distance) {
+                Some(signed_distance) => number(out, signed_distance),
+                None => empty(out, 1),
             }
         }
         for at in &self.columns.others {
@@ -84,7 +103,8 @@ impl Layout<'_> {
 
     /// The names of the columns that are not carried through.
     fn own(self) -> impl Iterator<Item = &'static str> {
-        ANSWER.into_iter().chain(NORMALS.into_iter().filter(move |_| self.normals))
+        let rank = self.ranks.then_some(RANK);
+        ANSWER.into_iter().chain(rank).chain(NORMALS.into_iter().filter(move |_| self.normals))
     }
 }
 
@@ -143,7 +163,7 @@ mod tests {
 
     fn header(input: &str, normals: bool) -> String {
         let columns = Points::new(input.as_bytes()).unwrap().header().unwrap();
-        String::from_utf8(Layout { columns: &columns, normals }.header()).unwrap()
+        String::from_utf8(Layout { columns: &columns, normals, ranks: false }.header()).unwrap()
     }
 
     #[test]

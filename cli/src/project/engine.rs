@@ -2,10 +2,10 @@
 
 use std::collections::HashMap;
 
-use perpend::{Body, BodyError, BodyFoot, DVec3, EntityId, FootPoint, Model, Query, QueryError, QueryOptions, Scratch};
+use perpend::{BodyError, BodyFoot, DVec3, EntityId, FootPoint, Model, Query, QueryError, QueryOptions, Scratch};
 use rayon::prelude::*;
 
-use crate::project::answer::{Layout, Named};
+use crate::project::answer::{Layout, Named, Ranked};
 use crate::project::points::{Batch, Row};
 use crate::project::query::{self, Asked, Complaint};
 use crate::project::tally::{Certified, Tally};
@@ -23,8 +23,24 @@ pub(crate) enum Target {
     Named,
     /// The nearest entity of the model.
     Nearest,
-    /// The nearest face of this body; where the body is closed the sign is its own: negative inside.
-    Body(EntityId),
+    /// So many of the nearest.
+    Several(usize),
+    /// All within this distance.
+    Within(f64),
+    /// The nearest face of this body, with the distance to the body signed or not.
+    Body { id: EntityId, signed: bool },
+}
+
+impl Target {
+    /// Whether a row may have several answers.
+    pub(crate) fn is_ranked(self) -> bool {
+        matches!(self, Self::Several(_) | Self::Within(_))
+    }
+
+    /// Whether a row is asked of one entity, and not of many.
+    fn is_of_entity(self) -> bool {
+        matches!(self, Self::Entity(_) | Self::Named)
+    }
 }
 
 /// Answers rows.
@@ -56,8 +72,8 @@ struct Memory {
     hint: Option<(EntityId, DVec3)>,
 }
 
-/// An answer: the entity and the foot, or none within the maximum distance.
-pub(crate) type Answer = Option<(EntityId, FootPoint)>;
+/// An answer: the entities and their feet, the nearest first; none within the maximum distance.
+pub(crate) type Answer = Vec<(EntityId, FootPoint)>;
 
 /// What a row asked with its answer, or what is wrong with it.
 pub(crate) type Asking = Result<(Asked, Answer), Complaint>;
@@ -92,10 +108,7 @@ impl<'a> Engine<'a> {
     }
 
     fn certified(&self, id: EntityId) -> Certified {
-        match self.target {
-            Target::Nearest | Target::Body(_) => self.of_model,
-            Target::Entity(_) | Target::Named => self.of_entity[&id],
-        }
+        if self.target.is_of_entity() { self.of_entity[&id] } else { self.of_model }
     }
 
     fn in_parts<T: Send>(&self, batch: &Batch, told: impl Fn(&[Row<'_>], Vec<Asking>) -> T + Sync) -> Vec<T> {
@@ -113,86 +126,101 @@ impl<'a> Engine<'a> {
         let asked: Vec<Result<Asked, Complaint>> =
             rows.iter().map(|row| query::read(*row, self.layout.columns, self.model)).collect();
         let points: Vec<DVec3> = asked.iter().flatten().map(|asked| asked.point).collect();
-        let mut nearest = match self.target {
-            Target::Nearest => self.model.nearest_all(&points, &self.options).into_iter(),
-            Target::Body(body) => self.of_body(body, &points).into_iter(),
-            Target::Entity(_) | Target::Named => Vec::new().into_iter(),
-        };
+        let mut of_many = self.of_many(&points).into_iter();
         let mut askings = Vec::with_capacity(rows.len());
         for (row, asked) in rows.iter().zip(asked) {
             askings.push(asked.and_then(|asked| {
                 let answer = match self.target {
-                    Target::Nearest | Target::Body(_) => nearest.next().unwrap_or(Ok(None)),
                     Target::Entity(id) => self.project(id, asked.point, memory),
-                    Target::Named => asked.entity.map_or(Ok(None), |id| self.project(id, asked.point, memory)),
+                    Target::Named => asked.entity.map_or(Ok(Vec::new()), |id| self.project(id, asked.point, memory)),
+                    _ => of_many.next().unwrap_or(Ok(Vec::new())),
                 };
-                answer.map(|answer| (asked, answer)).map_err(|error| self.refused(*row, asked.point, &error))
+                answer.map(|answer| (asked, answer)).map_err(|error| self.refused(*row, asked.point, error))
             }));
         }
         askings
     }
 
-    fn project(&self, id: EntityId, point: DVec3, memory: &mut Memory) -> Result<Answer, QueryError> {
+    /// The answers of the whole model, or of a body.
+    fn of_many(&self, points: &[DVec3]) -> Vec<Result<Answer, BodyError>> {
+        let (model, options) = (self.model, &self.options);
+        let one = |answer: Result<Option<(EntityId, FootPoint)>, QueryError>| -> Result<Answer, BodyError> {
+            Ok(answer?.into_iter().collect())
+        };
+        let many = |answer: Result<Answer, QueryError>| answer.map_err(BodyError::from);
+        match self.target {
+            Target::Entity(_) | Target::Named => Vec::new(),
+            Target::Nearest => model.nearest_all(points, options).into_iter().map(one).collect(),
+            Target::Several(k) => model.nearest_k_all(points, k, options).into_iter().map(many).collect(),
+            Target::Within(radius) => model.within_all(points, radius, options).into_iter().map(many).collect(),
+            Target::Body { id, signed: false } => {
+                model.nearest_of_all(id, points, options).into_iter().map(one).collect()
+            }
+            Target::Body { id, signed: true } => {
+                let signed = model.signed_distance_all(id, points, options);
+                signed.into_iter().zip(points).map(|(answer, p)| self.signed(id, *p, answer)).collect()
+            }
+        }
+    }
+
+    /// The answer of a body, with the sign of the body; none beyond the maximum distance.
+    fn signed(&self, body: EntityId, p: DVec3, answer: Result<BodyFoot, BodyError>) -> Result<Answer, BodyError> {
+        let BodyFoot { face, foot, signed_distance, .. } = answer?;
+        let limit = self.options.max_distance;
+        let is_within = limit.is_none_or(|limit| foot.distance <= limit)
+            || self.model.nearest_of(body, p, &self.options)?.is_some();
+        let foot = FootPoint { signed_distance: Some(signed_distance), ..foot };
+        Ok(is_within.then_some((face, foot)).into_iter().collect())
+    }
+
+    fn project(&self, id: EntityId, point: DVec3, memory: &mut Memory) -> Result<Answer, BodyError> {
         let entity = self.model.entity(id).ok_or(QueryError::UnknownEntity { id })?;
         let query = Query::new(point, self.options)?;
         let hint = memory.hint.filter(|(of, _)| *of == id).map(|(_, foot)| foot);
         let foot = entity.prepared().project_near(&query, hint, &mut memory.scratch);
         memory.hint = foot.map(|foot| (id, foot.point)).or(memory.hint);
-        Ok(foot.map(|foot| (id, foot)))
+        Ok(foot.map(|foot| (id, foot)).into_iter().collect())
     }
 
-    fn of_body(&self, body: EntityId, points: &[DVec3]) -> Vec<Result<Answer, QueryError>> {
-        if !self.model.body(body).is_some_and(Body::is_closed) {
-            return self.model.nearest_of_all(body, points, &self.options);
+    fn refused(&self, row: Row<'_>, point: DVec3, error: BodyError) -> Complaint {
+        match error {
+            BodyError::Query(QueryError::InvalidPoint { .. }) => {
+                let problem = "the coordinate is beyond ±1e75; give a smaller one".to_owned();
+                Complaint::out_of_range(row, self.layout.columns, point, problem)
+            }
+            other => Complaint::refused(row, other.to_string()),
         }
-        let signed = self.model.signed_distance_all(body, points, &self.options).into_iter();
-        let answer = |(signed, point): (Result<BodyFoot, BodyError>, &DVec3)| match signed {
-            Ok(BodyFoot { face, foot, signed_distance, .. }) => {
-                Ok(Some((face, FootPoint { signed_distance: Some(signed_distance), ..foot })))
-            }
-            Err(BodyError::Query(error)) => Err(error),
-            // the faces do not tell the side
-            Err(_) => {
-                let nearest = self.model.nearest_of(body, *point, &self.options)?;
-                Ok(nearest.map(|(face, foot)| (face, FootPoint { signed_distance: None, ..foot })))
-            }
-        };
-        signed.zip(points).map(answer).collect()
     }
 
-    fn refused(&self, row: Row<'_>, point: DVec3, error: &QueryError) -> Complaint {
-        let problem = match error {
-            QueryError::InvalidPoint { .. } => "the coordinate is beyond ±1e75; give a smaller one".to_owned(),
-            other => other.to_string(),
-        };
-        Complaint::out_of_range(row, self.layout.columns, point, problem)
-    }
-
-    /// Writes and counts the answer to a row.
+    /// Writes and counts the answers to a row.
     fn take(&self, row: Row<'_>, asking: Asking, answers: &mut Answers) {
         answers.tally.rows += 1;
-        let answer = match asking {
-            Ok((asked, Some((id, foot)))) => {
-                answers.tally.answer(&foot, asked.point.abs().max_element(), self.certified(id));
-                Some((id, foot))
-            }
-            Ok((_, None)) => {
-                answers.tally.beyond += 1;
-                None
+        let feet = match asking {
+            Ok((asked, feet)) => {
+                answers.tally.beyond += u64::from(feet.is_empty());
+                for (id, foot) in &feet {
+                    answers.tally.answer(foot, asked.point.abs().max_element(), self.certified(*id));
+                }
+                feet
             }
             Err(complaint) => {
                 answers.tally.bad += 1;
                 answers.complaints.push(complaint);
-                None
+                Vec::new()
             }
         };
-        let named = match self.target {
+        let named = |id: Option<EntityId>| match self.target {
             Target::Entity(id) => Named::Id(Some(id)),
             Target::Named => {
                 Named::Written(self.layout.columns.entity.and_then(|at| row.field(at)).unwrap_or_default())
             }
-            Target::Nearest | Target::Body(_) => Named::Id(answer.map(|(id, _)| id)),
+            _ => Named::Id(id),
         };
-        self.layout.row(&mut answers.text, row, named, answer.as_ref().map(|(_, foot)| foot));
+        if feet.is_empty() {
+            self.layout.row(&mut answers.text, row, named(None), None);
+        }
+        for (k, (id, foot)) in feet.iter().enumerate() {
+            self.layout.row(&mut answers.text, row, named(Some(*id)), Some(Ranked { rank: k + 1, foot }));
+        }
     }
 }

@@ -6,7 +6,7 @@ pub(crate) mod engine;
 pub(crate) mod output;
 pub(crate) mod points;
 pub(crate) mod progress;
-pub(crate) mod query;
+mod query;
 pub(crate) mod source;
 mod tally;
 
@@ -16,7 +16,7 @@ use std::process::ExitCode;
 use std::time::{Duration, Instant};
 
 use indicatif::ProgressBar;
-use perpend::{EntityId, QueryOptions};
+use perpend::{BodyError, Model, QueryOptions, Referent};
 
 use crate::args::ProjectArguments;
 use crate::error::CommandError;
@@ -45,7 +45,7 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let model = arguments.trust.read(&arguments.model)?;
     let reading = start.elapsed();
     if let Some(id) = arguments.entity
-        && model.entity(id).is_none()
+        && model.referent(id) == Referent::Missing
     {
         return Err(CommandError::unknown_entity(arguments.model.clone(), &model, id));
     }
@@ -60,14 +60,14 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let bar = progress::bar(length, file.is_some());
     let mut points = Points::new(bar.wrap_read(input)).map_err(|problem| source.wrong(problem))?;
     let columns = points.header().map_err(|problem| source.wrong(problem))?;
-    let target = target(arguments.entity, source, &columns)?;
+    let target = target(arguments, &model, &source, &columns)?;
     let options = QueryOptions {
         gap: arguments.gap,
         max_distance: arguments.max_distance,
         method: arguments.method,
         ..QueryOptions::default()
     };
-    let layout = Layout { columns: &columns, normals: arguments.normals };
+    let layout = Layout { columns: &columns, normals: arguments.normals, ranks: target.is_ranked() };
     let engine = Engine::new(&model, target, options, layout);
 
     let mut journal = Journal { complaints: Complaints::new(source, &bar), bar: &bar, tally: Tally::default() };
@@ -91,13 +91,34 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
 }
 
 /// What the rows are projected onto.
-pub(crate) fn target(entity: Option<EntityId>, source: Source<'_>, columns: &Columns) -> Result<Target, CommandError> {
-    match (entity, columns.entity) {
-        (Some(_), Some(_)) => Err(CommandError::TwoEntities { name: source.to_string() }),
-        (Some(id), None) => Ok(Target::Entity(id)),
-        (None, Some(_)) => Ok(Target::Named),
-        (None, None) => Ok(Target::Nearest),
+fn target(
+    arguments: &ProjectArguments,
+    model: &Model,
+    source: &Source<'_>,
+    columns: &Columns,
+) -> Result<Target, CommandError> {
+    let ProjectArguments { entity, k, within, .. } = *arguments;
+    let named = [("entity", entity.is_some()), ("k", k.is_some()), ("within", within.is_some())];
+    if columns.entity.is_some() {
+        return match named.into_iter().find(|(_, is_given)| *is_given) {
+            Some((option, _)) => Err(CommandError::TwoEntities { name: source.to_string(), option }),
+            None => Ok(Target::Named),
+        };
     }
+    Ok(match (entity, k, within) {
+        (Some(id), ..) if model.referent(id) == Referent::Body => {
+            let shells = model.body(id).map_or(&[][..], perpend::Body::shells);
+            if let (true, Some(shell)) = (arguments.normals, shells.iter().position(|shell| !shell.closed)) {
+                let source = BodyError::Open { body: id, shell };
+                return Err(CommandError::Body { model: arguments.model.clone(), source });
+            }
+            Target::Body { id, signed: arguments.normals }
+        }
+        (Some(id), ..) => Target::Entity(id),
+        (None, Some(k), _) => Target::Several(k as usize),
+        (None, None, Some(radius)) => Target::Within(radius),
+        (None, None, None) => Target::Nearest,
+    })
 }
 
 pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {

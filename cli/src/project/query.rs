@@ -80,6 +80,11 @@ pub(crate) fn read(row: Row<'_>, columns: &Columns, model: &Model) -> Result<Ask
 }
 
 impl Complaint {
+    /// What is refused of a row that reads well, by no fault of a column.
+    pub(crate) fn refused(row: Row<'_>, problem: String) -> Self {
+        Self { line: row.line(), column: None, problem }
+    }
+
     /// What the solver refuses of a row that reads well: a coordinate out of its range.
     pub(crate) fn out_of_range(row: Row<'_>, columns: &Columns, point: DVec3, problem: String) -> Self {
         let axis = point.abs().max_position();

@@ -167,14 +167,13 @@ impl Hierarchy {
         Self::of_pieces(frame, split_bent(pieces, &mut Vec::new()), Frame::reserve(degree, reach), level)
     }
 
-    /// Bézier curves with homogeneous control points in a frame's coordinates: curve `k` covers the parameters `[k, k + 1]`. `reserve` says how far rounding has
-    /// moved them already, in these coordinates.
-    pub(crate) fn of_curves(frame: Frame, nets: Vec<Vec<DVec4>>, reserve: f64) -> Self {
-        let degree = nets.iter().map(|net| net.len() - 1).max().unwrap_or(1);
-        let points = nets.iter().flatten().map(|h| cartesian(*h).length());
+    /// Bézier curves with homogeneous control points in a frame's coordinates, each with the parameter at which it starts; it covers 1. `reserve` says how far
+    /// rounding has moved them already, in these coordinates.
+    pub(crate) fn of_curves(frame: Frame, nets: Vec<(f64, Vec<DVec4>)>, reserve: f64) -> Self {
+        let degree = nets.iter().map(|(_, net)| net.len() - 1).max().unwrap_or(1);
+        let points = nets.iter().flat_map(|(_, net)| net).map(|h| cartesian(*h).length());
         let reserve = reserve + Frame::reserve((degree, 0), points.fold(0.0, f64::max));
-        let pieces =
-            nets.into_iter().enumerate().map(|(k, net)| Piece::curve(net, (k as f64, (k + 1) as f64))).collect();
+        let pieces = nets.into_iter().map(|(from, net)| Piece::curve(net, (from, from + 1.0))).collect();
         Self::of_pieces(frame, split_bent(pieces, &mut Vec::new()), reserve, Level::new())
     }
 

@@ -23,8 +23,10 @@ const DEPTH: u32 = 12;
 #[derive(Debug)]
 pub(crate) struct Boundary {
     curves: Hierarchy,
-    /// What the hierarchy's parameter counts: part `k` covers `[k, k + 1]`.
+    /// What the hierarchy's parameter counts, in ascending order of it.
     parts: Vec<Part>,
+    /// Least and largest parameters of the carrier.
+    domain: (DVec2, DVec2),
     /// How far any of the curves may be from the boundary, in the entity's own coordinates.
     error: f64,
 }
@@ -32,6 +34,9 @@ pub(crate) struct Boundary {
 /// A part of the boundary: a range of the parameter of one of its pieces.
 #[derive(Debug, Clone, Copy)]
 struct Part {
+    /// It covers `[start, start + 1]` of the hierarchy's parameter. Where it does not go on from the part before it, a value lies between
+    /// both: no value of the parameter is two points.
+    start: f64,
     piece: u32,
     from: f64,
     to: f64,
@@ -51,10 +56,13 @@ pub(crate) struct BoundaryFoot {
 impl Boundary {
     /// The boundary of a region of a surface, whose patches in the entity's own coordinates are given.
     pub(super) fn new(region: &Region, surface: &NurbsSurface, frame: Frame, patches: &Patches) -> Self {
-        let mut parts = Vec::new();
-        let mut nets: Vec<Net> = Vec::new();
+        let mut parts: Vec<Part> = Vec::new();
+        let mut nets: Vec<(f64, Net)> = Vec::new();
+        let mut end: Option<DVec2> = None;
         let (mut error, mut degree) = (0.0_f64, 0);
         for (index, piece) in region.pieces().iter().enumerate() {
+            let mut goes_on = end == Some(piece.start);
+            end = Some(piece.end);
             for (from, to) in cut(piece, surface) {
                 let points = restricted(&piece.points, from, to);
                 let patch = patches.holding(middle_of(&points));
@@ -75,28 +83,33 @@ impl Boundary {
                         (net, 0.0)
                     };
                     error = error.max(off);
-                    nets.push(net);
-                    parts.push(Part { piece: index as u32, from, to });
+                    let step = if goes_on { 1.0 } else { 2.0 };
+                    let start = parts.last().map_or(0.0, |last| last.start + step);
+                    goes_on = true;
+                    nets.push((start, net));
+                    parts.push(Part { start, piece: index as u32, from, to });
                 }
             }
         }
         let curves = Hierarchy::of_curves(frame, nets, patches.rounding(degree));
-        Self { curves, parts, error }
+        let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|along| surface.domain(along));
+        Self { curves, parts, domain: (DVec2::new(u0, v0), DVec2::new(u1, v1)), error }
     }
 
     /// The boundary's nearest point; none where it is proven that none lies within the query's `max_distance`.
     pub(crate) fn project(&self, query: &Query, region: &Region, workspace: &mut Workspace) -> Option<BoundaryFoot> {
         let mut solution = self.curves.project(query, None, workspace)?;
         solution.lower_bound = (solution.lower_bound - self.error).max(0.0);
-        let index = (solution.u.floor().max(0.0) as usize).min(self.parts.len() - 1);
+        let index = self.parts.partition_point(|part| part.start <= solution.u).saturating_sub(1);
         let part = self.parts[index];
-        let share = (solution.u - index as f64).clamp(0.0, 1.0);
+        let share = (solution.u - part.start).clamp(0.0, 1.0);
         let t = if share >= 1.0 { part.to } else { part.from + share * (part.to - part.from) };
         let piece = &region.pieces()[part.piece as usize];
         let at = match t {
             0.0 => piece.start,
             1.0 => piece.end,
-            t => point(&piece.points, t),
+            // an ulp outside, where a combination of equal numbers was rounded up
+            t => point(&piece.points, t).clamp(self.domain.0, self.domain.1),
         };
         let is_vertex = (t == 0.0 && piece.begins_curve) || (t == 1.0 && piece.ends_curve);
         Some(BoundaryFoot { at, is_vertex, solution })

@@ -7,7 +7,7 @@
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 use glam::{DVec2, DVec3};
-use perpend::{Frame, NurbsSurface};
+use perpend::{Aabb, Frame, NurbsSurface};
 
 use super::FaceError;
 use super::numeric::Numeric;
@@ -74,13 +74,13 @@ impl Carrier {
         let frame = |frame: &Frame| Frame::new(frame.centre, frame.axis, frame.xdir);
         Ok(match surface {
             SourceSurface::Plane(given) => {
-                let form = Form::Plane(frame(given)?);
+                let form = Form::Plane(beside(frame(given)?, points));
                 let carrier = analytic(form, [None; 2], [NO_LIMIT; 2], Vec::new(), DVec2::ONE);
                 Self { normal_kept: true, ..carrier }
             }
             SourceSurface::Cylinder { frame: given, radius } => {
                 positive("radius", *radius)?;
-                let form = Form::Cylinder { frame: frame(given)?, radius: *radius };
+                let form = Form::Cylinder { frame: along(frame(given)?, points), radius: *radius };
                 let scale = DVec2::new(1.0, *radius);
                 analytic(form, [None, Some(TAU)], [NO_LIMIT; 2], Vec::new(), scale)
             }
@@ -246,4 +246,18 @@ fn polar(frame: &Frame, p: DVec3) -> (f64, f64, f64) {
     let arm = p - frame.centre;
     let (x, y) = (arm.dot(frame.xdir), arm.dot(frame.ydir()));
     (x.hypot(y), y.atan2(x), arm.dot(frame.axis))
+}
+
+/// The same plane with its origin beside the points: files put it a mile away, where nothing can be proved to the digits of the face.
+fn beside(frame: Frame, points: &[DVec3]) -> Frame {
+    let arm = Aabb::around(points.iter().copied()).centre() - frame.centre;
+    let centre = frame.centre + arm.dot(frame.xdir) * frame.xdir + arm.dot(frame.ydir()) * frame.ydir();
+    if centre.is_finite() { Frame { centre, ..frame } } else { frame }
+}
+
+/// The same axis with its origin beside the points.
+fn along(frame: Frame, points: &[DVec3]) -> Frame {
+    let arm = Aabb::around(points.iter().copied()).centre() - frame.centre;
+    let centre = frame.centre + arm.dot(frame.axis) * frame.axis;
+    if centre.is_finite() { Frame { centre, ..frame } } else { frame }
 }

@@ -75,7 +75,7 @@ impl Analytic {
             }
             Kind::Torus { centre, axis, xdir, major_radius, minor_radius, sweep, section, .. } => {
                 let whole = (section.1 - section.0).abs() > std::f64::consts::TAU * (1.0 - 1e-9);
-                if whole && section.0 != 0.0 {
+                if whole && section.0.abs() > 1e-12 {
                     return None;
                 }
                 let xdir = turned(axis, xdir, sweep.0);

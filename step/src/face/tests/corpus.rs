@@ -27,7 +27,7 @@ struct Expected {
     edge_tolerance: f64,
 }
 
-fn real() -> PathBuf {
+pub(super) fn real() -> PathBuf {
     let shared = std::env::var_os("PERPEND_SHARED").map(PathBuf::from);
     shared.unwrap_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared")).join("real")
 }
@@ -207,6 +207,13 @@ fn face(json: &Value, edges: &[SourceEdge], index: &HashMap<u64, usize>) -> (Sou
 
 fn nurbs_of(edge: &SourceEdge) -> NurbsCurve {
     edge_curve(edge, 1e-6).expect("an edge")
+}
+
+/// The areas that the other kernel gives for the faces of a model.
+pub(super) fn areas(file: &Path) -> Vec<f64> {
+    let text = std::fs::read_to_string(file).expect("the corpus is readable");
+    let json: Value = serde_json::from_str(&text).expect("the corpus is JSON");
+    json["entities"].as_array().expect("entities").iter().filter_map(|one| one["area"].as_f64()).collect()
 }
 
 /// What is wrong with a face that was built; none where nothing is.

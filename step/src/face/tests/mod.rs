@@ -2,4 +2,5 @@
 
 mod area;
 mod corpus;
+mod files;
 mod oddities;
