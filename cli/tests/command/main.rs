@@ -10,5 +10,6 @@ mod learn;
 mod output;
 mod prepare;
 mod project;
+mod report;
 mod stationary;
 mod workshop;
