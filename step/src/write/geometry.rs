@@ -246,12 +246,12 @@ pub(super) fn spline_surface<W: Write>(text: &mut Text<W>, surface: &NurbsSurfac
     }
 }
 
-/// The class that is known of a definition and proved here within rounding; otherwise free form.
+/// The class that is known of a definition and proved here within rounding; where none is, the one that is recognised; otherwise free form.
 pub(super) fn known_kind(record: Option<&perpend::Record>, definition: &Definition) -> Kind {
+    let tolerance = perpend::knowledge::default_tolerance(definition);
     let item = record.and_then(|record| record.classification.as_ref()?.kind.as_ref());
-    let proved = item.filter(|item| {
-        let tolerance = perpend::knowledge::default_tolerance(definition);
-        perpend::knowledge::prove(&item.value, definition, tolerance).is_ok()
-    });
-    proved.map_or(Kind::FreeForm, |item| item.value.clone())
+    match item.filter(|item| perpend::knowledge::prove(&item.value, definition, tolerance).is_ok()) {
+        Some(item) => item.value.clone(),
+        None => perpend::knowledge::recognise(definition, tolerance).value,
+    }
 }
