@@ -50,6 +50,8 @@ pub(crate) enum Command {
     Project(ProjectArguments),
     /// Find all stationary points of the distance from a point to an entity
     Stationary(StationaryArguments),
+    /// Make a page that shows a model and how far points lie from it
+    Report(ReportArguments),
     /// Write a model for other programs: STEP, triangles (OBJ, STL), or what is known as JSON
     Export(ExportArguments),
 }
@@ -291,7 +293,7 @@ pub(crate) struct ExportArguments {
     #[arg(long, value_name = "ID", value_parser = entity_id)]
     pub(crate) entity: Option<EntityId>,
     /// OBJ and STL: how far triangles and polylines may be from the shapes, in the model's unit; without it, 1e-3 times the model's size
-    #[arg(long, value_name = "E", value_parser = chord, allow_negative_numbers = true)]
+    #[arg(long, value_name = "E", value_parser = above_zero, allow_negative_numbers = true)]
     pub(crate) chord: Option<f64>,
     /// STL: write text
     #[arg(long)]
@@ -367,6 +369,42 @@ pub(crate) struct ProjectArguments {
     pub(crate) output: Option<PathBuf>,
 }
 
+/// Make a page that shows a model and how far points lie from it.
+///
+/// One HTML file that needs nothing else: the surfaces, the points in the colours of their signed deviations, a histogram and tables.
+/// POINTS is as for `perpend project`.
+#[derive(Debug, Args)]
+#[command(after_help = EXIT_CODES)]
+pub(crate) struct ReportArguments {
+    /// The model file (RON)
+    pub(crate) model: PathBuf,
+    #[command(flatten)]
+    pub(crate) trust: TrustArguments,
+    /// The points (CSV); `-` is standard input
+    pub(crate) points: PathBuf,
+    /// The page, written whole or not at all
+    #[arg(short, long, value_name = "OUT")]
+    pub(crate) output: PathBuf,
+    /// Measure all points against this entity, and show it alone
+    #[arg(long, value_name = "ID", value_parser = entity_id)]
+    pub(crate) entity: Option<EntityId>,
+    /// Measure all points against this body, and show it alone
+    #[arg(long, value_name = "ID", value_parser = entity_id, conflicts_with = "entity")]
+    pub(crate) body: Option<EntityId>,
+    /// How far triangles may be from the surfaces, in the model's unit; without it, 2e-4 times the size of what is shown
+    #[arg(long, value_name = "E", value_parser = above_zero, allow_negative_numbers = true)]
+    pub(crate) chord: Option<f64>,
+    /// The deviation at which the colours end, in the model's unit; without it, a round number that 98 % of the points are within
+    #[arg(long, value_name = "MAX", value_parser = above_zero, allow_negative_numbers = true)]
+    pub(crate) scale: Option<f64>,
+    /// The most points that are drawn: of more, one of 2, 4, 8, … is. The statistics are always of all points
+    #[arg(long, value_name = "N", default_value_t = 200_000, value_parser = value_parser!(u32).range(1..=10_000_000))]
+    pub(crate) most_points: u32,
+    /// The page's title; without it, the name of POINTS
+    #[arg(long, value_name = "T")]
+    pub(crate) title: Option<String>,
+}
+
 const ABOUT_ANSWERS: &str = "\
 Answers, one row for each row of POINTS, in order; with --k and --within, as many as entities answer, the nearest
 first, and one with empty answers where none does:
@@ -415,7 +453,7 @@ fn length(text: &str) -> Result<f64, String> {
     }
 }
 
-fn chord(text: &str) -> Result<f64, String> {
+fn above_zero(text: &str) -> Result<f64, String> {
     match length(text) {
         Ok(length) if length > 0.0 => Ok(length),
         _ => Err("it is a length in the model's unit: a finite number above 0".to_owned()),

@@ -15,6 +15,10 @@ pub(crate) enum CommandError {
     Model(#[from] ReadError),
     #[error("{}: no entity has the id {id}; {known}", model.display())]
     UnknownEntity { model: PathBuf, id: EntityId, known: String },
+    #[error("{}: no body has the id {id}; {known}", model.display())]
+    UnknownBody { model: PathBuf, id: EntityId, known: String },
+    #[error("{}: {source}", model.display())]
+    Body { model: PathBuf, source: BodyError },
     #[error("{}: {source}", model.display())]
     Replay { model: PathBuf, source: ReplayError },
     #[error("{}: the model has no entities, so nothing is nearest: add one", model.display())]
@@ -35,10 +39,10 @@ pub(crate) enum CommandError {
     Threads(#[from] rayon::ThreadPoolBuildError),
     #[error("{name} has a column `entity`, and --{option} {}: leave out one of them", if *option == "entity" { "names one too" } else { "asks the whole model" })]
     TwoEntities { name: String, option: &'static str },
-    #[error("{}: {source}", model.display())]
-    Body { model: PathBuf, source: BodyError },
     #[error("{} is the model; it would be lost: give another file to -o", path.display())]
     OutputIsModel { path: PathBuf },
+    #[error("{} is an input; it would be lost: give another file to -o", path.display())]
+    OutputIsInput { path: PathBuf },
     #[error("{}: no ending that names a format: name it .step, .stp, .obj, .stl or .json, or give --format", path.display())]
     UnknownFormat { path: PathBuf },
     #[error("{option} means nothing to {format}: leave it out")]
@@ -55,10 +59,23 @@ impl CommandError {
         Self::UnknownEntity { model: path, id, known: known_ids(model) }
     }
 
+    /// No body of the model has this id.
+    pub(crate) fn unknown_body(path: PathBuf, model: &Model, id: EntityId) -> Self {
+        const SHOWN: usize = 10;
+        let ids: Vec<String> = model.bodies().iter().take(SHOWN).map(|body| body.id().to_string()).collect();
+        let known = match model.bodies().len() {
+            0 => "it has no bodies".to_owned(),
+            count if count <= SHOWN => format!("its bodies are {}", ids.join(", ")),
+            count => format!("its bodies are {} and {} more", ids.join(", "), count - SHOWN),
+        };
+        Self::UnknownBody { model: path, id, known }
+    }
+
     pub(crate) fn exit_code(&self) -> ExitCode {
         match self {
             Self::TwoEntities { .. }
             | Self::OutputIsModel { .. }
+            | Self::OutputIsInput { .. }
             | Self::UnknownFormat { .. }
             | Self::IdleOption { .. } => ExitCode::from(2),
             _ => ExitCode::FAILURE,

@@ -2,6 +2,7 @@
 
 mod args;
 mod check;
+mod deviation_report;
 mod error;
 mod explain;
 mod export;
@@ -39,6 +40,7 @@ fn main() -> ExitCode {
         Command::Impact(arguments) => impact::run(&arguments),
         Command::Project(arguments) => project::run(&arguments),
         Command::Stationary(arguments) => stationary::run(&arguments),
+        Command::Report(arguments) => deviation_report::run(&arguments),
         Command::Export(arguments) => export::run(&arguments),
     };
     match done {

@@ -124,7 +124,6 @@ fn judge(surface: NurbsSurface, trimming: Trimming, queries: usize, random: &mut
             _ => 0,
         }] += 1;
     }
-    println!("{name}: inside, edge, vertex, uncertified {counts:?}; {:?}", scratch.statistics.proof);
     counts
 }
 

@@ -166,7 +166,7 @@ impl Prepared {
 
 /// The class of an analytic face, proved against its carrier.
 fn proven(shape: &Shape, built: &BuiltFace) -> Result<Option<Item<perpend::Kind>>, perpend::InvalidDefinition> {
-    let Some(kind) = shape.clone().enter()?.kind else { return Ok(None) };
+    let Some(kind) = (*shape).enter()?.kind else { return Ok(None) };
     let definition = Definition::from(built.surface.clone());
     let tolerance = RECOGNITION * definition.size();
     let gap = perpend::knowledge::prove(&kind, &definition, tolerance).ok();

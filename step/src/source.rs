@@ -40,7 +40,7 @@ pub enum SourceSurface {
         /// The radius of the tube.
         minor: f64,
     },
-    /// What a curve sweeps in a full turn about an axis.
+    /// What a curve sweeps in a full turn about an axis; STEP's u is the angle, its v the parameter of the curve.
     Revolution {
         /// The curve.
         profile: SourceCurve,
@@ -49,7 +49,7 @@ pub enum SourceSurface {
         /// The direction of the axis, of unit length.
         axis: DVec3,
     },
-    /// What a curve sweeps along a direction, without end: `profile(u) + v · direction`.
+    /// What a curve sweeps along a direction, without end: STEP's `profile(u) + v · direction`.
     Extrusion {
         /// The curve.
         profile: SourceCurve,

@@ -165,10 +165,11 @@ impl Cutting<'_> {
 }
 
 impl Open {
-    /// Halves along the direction that bends more.
+    /// Halves along the direction that bends more; where twist matters most, along the longer one. Either halves the twist, but ever narrower
+    /// strips would have triangles that stand askew, and whose area does not approach that of the surface.
     fn halves(&self) -> Option<(Direction, f64, Patch, Patch)> {
-        let Derivatives { u, v, uu, vv, .. } = self.bounds;
-        let by_u = if uu == vv { u >= v } else { uu > vv };
+        let Derivatives { u, v, uu, uv, vv } = self.bounds;
+        let by_u = if uu == vv || 2.0 * uv > uu.max(vv) { u >= v } else { uu > vv };
         let order = if by_u { [Direction::U, Direction::V] } else { [Direction::V, Direction::U] };
         order.into_iter().find_map(|along| self.patch.halves(along).map(|(at, low, high)| (along, at, low, high)))
     }

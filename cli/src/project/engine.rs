@@ -73,7 +73,10 @@ struct Memory {
 }
 
 /// An answer: the entities and their feet, the nearest first; none within the maximum distance.
-type Answer = Vec<(EntityId, FootPoint)>;
+pub(crate) type Answer = Vec<(EntityId, FootPoint)>;
+
+/// What a row asked with its answer, or what is wrong with it.
+pub(crate) type Asking = Result<(Asked, Answer), Complaint>;
 
 impl<'a> Engine<'a> {
     pub(crate) fn new(model: &'a Model, target: Target, options: QueryOptions, layout: Layout<'a>) -> Self {
@@ -85,34 +88,57 @@ impl<'a> Engine<'a> {
 
     /// The answers to a batch, in order, in parts.
     pub(crate) fn answer(&self, batch: &Batch) -> Vec<Answers> {
+        self.in_parts(batch, |rows, askings| {
+            let mut answers = Answers::default();
+            for (row, asking) in rows.iter().zip(askings) {
+                self.take(*row, asking, &mut answers);
+            }
+            answers
+        })
+    }
+
+    /// What the rows of a batch ask, each with its line and its answer, in order, in parts.
+    pub(crate) fn ask(&self, batch: &Batch) -> Vec<Vec<(u64, Asking)>> {
+        self.in_parts(batch, |rows, askings| rows.iter().map(|row| row.line()).zip(askings).collect())
+    }
+
+    /// Whether the answer to a point is certified.
+    pub(crate) fn is_certified(&self, id: EntityId, foot: &FootPoint, point: DVec3) -> bool {
+        self.certified(id).holds(foot, point.abs().max_element())
+    }
+
+    fn certified(&self, id: EntityId) -> Certified {
+        if self.target.is_of_entity() { self.of_entity[&id] } else { self.of_model }
+    }
+
+    fn in_parts<T: Send>(&self, batch: &Batch, told: impl Fn(&[Row<'_>], Vec<Asking>) -> T + Sync) -> Vec<T> {
         (0..batch.len().div_ceil(ROWS))
             .into_par_iter()
             .map_init(Memory::default, |memory, part| {
                 let end = batch.len().min((part + 1) * ROWS);
                 let rows: Vec<Row<'_>> = (part * ROWS..end).map(|index| batch.row(index)).collect();
-                self.answer_part(&rows, memory)
+                told(&rows, self.ask_part(&rows, memory))
             })
             .collect()
     }
 
-    fn answer_part(&self, rows: &[Row<'_>], memory: &mut Memory) -> Answers {
+    fn ask_part(&self, rows: &[Row<'_>], memory: &mut Memory) -> Vec<Asking> {
         let asked: Vec<Result<Asked, Complaint>> =
             rows.iter().map(|row| query::read(*row, self.layout.columns, self.model)).collect();
         let points: Vec<DVec3> = asked.iter().flatten().map(|asked| asked.point).collect();
         let mut of_many = self.of_many(&points).into_iter();
-        let mut answers = Answers::default();
+        let mut askings = Vec::with_capacity(rows.len());
         for (row, asked) in rows.iter().zip(asked) {
-            let answer = asked.and_then(|asked| {
+            askings.push(asked.and_then(|asked| {
                 let answer = match self.target {
                     Target::Entity(id) => self.project(id, asked.point, memory),
                     Target::Named => asked.entity.map_or(Ok(Vec::new()), |id| self.project(id, asked.point, memory)),
                     _ => of_many.next().unwrap_or(Ok(Vec::new())),
                 };
                 answer.map(|answer| (asked, answer)).map_err(|error| self.refused(*row, asked.point, error))
-            });
-            self.take(*row, answer, &mut answers);
+            }));
         }
-        answers
+        askings
     }
 
     /// The answers of the whole model, or of a body.
@@ -167,14 +193,13 @@ impl<'a> Engine<'a> {
     }
 
     /// Writes and counts the answers to a row.
-    fn take(&self, row: Row<'_>, answer: Result<(Asked, Answer), Complaint>, answers: &mut Answers) {
+    fn take(&self, row: Row<'_>, asking: Asking, answers: &mut Answers) {
         answers.tally.rows += 1;
-        let feet = match answer {
+        let feet = match asking {
             Ok((asked, feet)) => {
                 answers.tally.beyond += u64::from(feet.is_empty());
                 for (id, foot) in &feet {
-                    let certified = if self.target.is_of_entity() { self.of_entity[id] } else { self.of_model };
-                    answers.tally.answer(foot, asked.point.abs().max_element(), certified);
+                    answers.tally.answer(foot, asked.point.abs().max_element(), self.certified(*id));
                 }
                 feet
             }

@@ -1,12 +1,13 @@
 //! `perpend project`: the nearest points to a file of points.
 
-mod answer;
-mod engine;
-mod output;
+pub(crate) mod answer;
+pub(crate) mod complaints;
+pub(crate) mod engine;
+pub(crate) mod output;
 pub(crate) mod points;
-mod progress;
+pub(crate) mod progress;
 mod query;
-mod source;
+pub(crate) mod source;
 mod tally;
 
 use std::fs;
@@ -20,18 +21,16 @@ use perpend::{BodyError, Model, QueryOptions, Referent};
 use crate::args::ProjectArguments;
 use crate::error::CommandError;
 use crate::project::answer::Layout;
+use crate::project::complaints::Complaints;
 use crate::project::engine::{Answers, Engine, Target};
 use crate::project::output::Output;
 use crate::project::points::{Batch, Columns, Points};
 use crate::project::source::Source;
 use crate::project::tally::Tally;
-use crate::report::{counted, say};
+use crate::report::counted;
 
 /// How many rows are in memory at a time.
-const BATCH: usize = 4096;
-
-/// How many bad rows are named one by one.
-const NAMED: usize = 20;
+pub(crate) const BATCH: usize = 4096;
 
 pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError> {
     let file = arguments.output.as_deref().filter(|path| path.as_os_str() != "-");
@@ -71,7 +70,7 @@ pub(crate) fn run(arguments: &ProjectArguments) -> Result<ExitCode, CommandError
     let layout = Layout { columns: &columns, normals: arguments.normals, ranks: target.is_ranked() };
     let engine = Engine::new(&model, target, options, layout);
 
-    let mut journal = Journal { source: &source, bar: &bar, named: 0, tally: Tally::default() };
+    let mut journal = Journal { complaints: Complaints::new(source, &bar), bar: &bar, tally: Tally::default() };
     let mut output = output.write(&layout.header())?;
     let mut batch = Batch::default();
     loop {
@@ -128,18 +127,15 @@ pub(crate) fn is_same_file(a: &Path, b: &Path) -> bool {
 
 /// What is told while the run lasts.
 struct Journal<'a> {
-    source: &'a Source<'a>,
+    complaints: Complaints<'a>,
     bar: &'a ProgressBar,
-    /// How many bad rows have been named.
-    named: usize,
     tally: Tally,
 }
 
 impl Journal<'_> {
     fn take(&mut self, answers: &Answers) {
-        for complaint in answers.complaints.iter().take(NAMED - self.named) {
-            self.bar.suspend(|| say(format_args!("{}:{complaint}", self.source)));
-            self.named += 1;
+        for complaint in &answers.complaints {
+            self.complaints.take(complaint);
         }
         self.tally.add(&answers.tally);
     }
@@ -150,10 +146,7 @@ impl Journal<'_> {
     }
 
     fn finish(&self, unit: &str, reading: Duration, projecting: Duration) {
-        let unnamed = self.tally.bad - self.named as u64;
-        if unnamed > 0 {
-            say(format_args!("{}: and {} like these", self.source, counted(unnamed, "other bad row")));
-        }
+        self.complaints.finish();
         self.tally.report(unit, reading, projecting);
     }
 }

@@ -47,7 +47,7 @@ impl Certified {
     }
 
     /// Whether this answer is certified; `coordinate` is the query point's largest |coordinate|.
-    fn holds(self, foot: &FootPoint, coordinate: f64) -> bool {
+    pub(crate) fn holds(self, foot: &FootPoint, coordinate: f64) -> bool {
         foot.gap() <= self.gap + 32.0 * f64::EPSILON * (self.reach + coordinate)
     }
 }

@@ -61,8 +61,8 @@ fn one_entity_alone() {
 #[test]
 fn a_chord_error_that_is_too_small_is_an_error_that_names_one_that_would_do() {
     let workshop = Workshop::new();
-    let run = workshop.run(&["export", "model.ron", "-o", "out.obj", "--entity", "7", "--chord", "1e-12"]);
-    run.ends(1, "model.ron: entity 7: 250000 segments are too few for the chord error 1e-12: --chord ");
+    let run = workshop.run(&["export", "model.ron", "-o", "out.obj", "--entity", "7", "--chord", "1e-15"]);
+    run.ends(1, "model.ron: entity 7: 250000 segments are too few for the chord error 1e-15: --chord ");
     let would = run.err.split("--chord ").nth(1).and_then(|rest| rest.split_whitespace().next()).unwrap().to_owned();
     workshop.run(&["export", "model.ron", "-o", "out.obj", "--entity", "7", "--chord", &would]).ends(0, "segments");
 }

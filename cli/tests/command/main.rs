@@ -11,5 +11,6 @@ mod learn;
 mod output;
 mod prepare;
 mod project;
+mod report;
 mod stationary;
 mod workshop;

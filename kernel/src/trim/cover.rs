@@ -5,8 +5,11 @@ use glam::{DVec2, DVec3};
 use crate::trim::crossing::{Net, halved, orientation};
 use crate::trim::region::{BoundaryPiece, Region, Side, hull};
 
-/// How often a piece is halved at most to see whether it meets a box.
-const DEPTH: u32 = 10;
+/// A part of a piece whose hull meets a box and is this share of it meets the box, as far as need be told.
+const FINE: f64 = 0.125;
+
+/// How often a piece is halved at most.
+const DEPTH: u32 = 60;
 
 /// What a region does in a box of parameters.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
@@ -21,7 +24,7 @@ pub enum Cover {
 
 impl Region {
     /// What the region does in the closed box from `min` to `max`. `Inside` and `Outside` are certain; `Crossed` may be said of a box that the boundary passes by
-    /// a thousandth of a piece's length.
+    /// an eighth of its size.
     #[must_use]
     pub fn cover(&self, min: DVec2, max: DVec2) -> Cover {
         if self.pieces.iter().any(|piece| meets(piece, min, max)) {
@@ -49,7 +52,9 @@ fn meets(piece: &BoundaryPiece, min: DVec2, max: DVec2) -> bool {
         if apart(hull(&points, start, end), (min, max)) {
             continue;
         }
-        if depth == DEPTH || is_within(start, min, max) || is_within(end, min, max) {
+        let (low, high) = hull(&points, start, end);
+        let is_fine = (high - low).cmple(FINE * (max - min)).all();
+        if is_fine || depth == DEPTH || is_within(start, min, max) || is_within(end, min, max) {
             return true;
         }
         let (low, high) = halved(&points);

@@ -32,6 +32,9 @@ const NO_LEAF: u32 = u32::MAX;
 /// Splits of the form of a crossed leaf before its vector piece is split: pieces of it may lie outside.
 const SHARE: u32 = 24;
 
+/// How often a crossed leaf is refined at most: what is left then is smaller than rounding of its parameters.
+pub(super) const CROSSED_DEPTH: u32 = 90;
+
 /// How often a glance is repeated while it finds nearer points.
 const GLANCES: u32 = 3;
 
@@ -235,7 +238,7 @@ fn prove_crossed(trim: &Trim, part: Part<'_>, slopes: &Slopes, state: &mut State
     if !is_refuted && certify(part, state, memory, SHARE, false) == Outcome::Closed {
         return;
     }
-    if depth >= REFINED_DEPTH || state.work == 0 {
+    if depth >= CROSSED_DEPTH || state.work == 0 {
         state.done.unresolved += 1;
         state.open = state.open.min(part.leaf.box_distance_squared(state.point).sqrt());
         return;
@@ -257,7 +260,7 @@ fn prove_crossed(trim: &Trim, part: Part<'_>, slopes: &Slopes, state: &mut State
         let half = Part { leaf, index: part.index, within: within[k], region: Some(region) };
         match region.cover(DVec2::new(leaf.u.0, leaf.v.0), DVec2::new(leaf.u.1, leaf.v.1)) {
             Cover::Outside => {}
-            Cover::Inside => close(Part { region: None, ..half }, state, memory, depth + 1),
+            Cover::Inside => close(Part { region: None, ..half }, state, memory, depth.min(REFINED_DEPTH / 2)),
             Cover::Crossed => prove_crossed(trim, half, &leaf.slopes(), state, memory, depth + 1),
         }
     }

@@ -164,7 +164,9 @@ impl Hierarchy {
         for cusp in cusps {
             pieces = pieces.into_iter().flat_map(|piece| piece.cut(Direction::U, *cusp)).collect();
         }
-        Self::of_pieces(frame, split_bent(pieces, &mut Vec::new()), Frame::reserve(degree, reach), level)
+        let mut points = Vec::new();
+        let pieces = split_bent(pieces, &mut points);
+        Self::of_pieces(frame, pieces, Frame::reserve(degree, reach), level, &mut points)
     }
 
     /// Bézier curves with homogeneous control points in a frame's coordinates, each with the parameter at which it starts; it covers 1. `reserve` says how far
@@ -174,12 +176,14 @@ impl Hierarchy {
         let points = nets.iter().flat_map(|(_, net)| net).map(|h| cartesian(*h).length());
         let reserve = reserve + Frame::reserve((degree, 0), points.fold(0.0, f64::max));
         let pieces = nets.into_iter().map(|(from, net)| Piece::curve(net, (from, from + 1.0))).collect();
-        Self::of_pieces(frame, split_bent(pieces, &mut Vec::new()), reserve, Level::new())
+        let mut points = Vec::new();
+        let pieces = split_bent(pieces, &mut points);
+        Self::of_pieces(frame, pieces, reserve, Level::new(), &mut points)
     }
 
-    fn of_pieces(frame: Frame, pieces: Vec<Piece>, reserve: f64, level: Level) -> Self {
-        let mut points = Vec::new();
-        let leaves: Vec<Leaf> = pieces.into_iter().map(|piece| Leaf::new(piece, level, &mut points)).collect();
+    /// `points` is working memory.
+    fn of_pieces(frame: Frame, pieces: Vec<Piece>, reserve: f64, level: Level, points: &mut Vec<DVec3>) -> Self {
+        let leaves: Vec<Leaf> = pieces.into_iter().map(|piece| Leaf::new(piece, level, points)).collect();
         let boxes: Vec<Aabb> = leaves.iter().map(|leaf| leaf.bounds).collect();
         let whole = |range: fn(&Leaf) -> (f64, f64)| {
             leaves.iter().map(range).fold((f64::MAX, f64::MIN), |(low, high), (from, to)| (low.min(from), high.max(to)))

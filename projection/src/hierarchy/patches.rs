@@ -4,13 +4,13 @@ use fearless_simd::Level;
 use glam::{DVec2, DVec3};
 use perpend_kernel::{Aabb, Cover, Definition, Direction, NurbsSurface, Region, cartesian};
 
-use super::crossed::Trim;
+use super::crossed::{CROSSED_DEPTH, Trim};
 use super::frame::power_of_two_below;
 use super::piece::Piece;
-use super::{Frame, Hierarchy, MOST_POINTS, PREPARED_DEPTH, ROUNDING, split_bent};
+use super::{Frame, Hierarchy, MOST_POINTS, ROUNDING, split_bent};
 
-/// How often a patch that the boundary crosses is halved beyond what its bending asks.
-const CROSSED_DEPTH: u32 = 6;
+/// How often a patch that the boundary crosses is halved before queries beyond what its bending asks.
+const PREPARED_CROSSED_DEPTH: u32 = 6;
 
 /// How many leaves may come of that.
 const MOST_LEAVES: usize = 4096;
@@ -51,9 +51,10 @@ impl Patches {
         };
         let (net, rational) = frame.net(definition);
         let reach = net.iter().fold(0.0_f64, |reach, h| reach.max(cartesian(*h).length()));
-        // two cuts at parameters in either direction: three roundings a level
+        // two cuts at parameters in either direction: three roundings a level; and the halvings of crossed leaves
         let (p, q) = surface.degree();
-        let reserve = Frame::reserve((p, q), reach) + 12.0 * (p + q) as f64 * ROUNDING * reach;
+        let more = 12.0 * (p + q) as f64 + f64::from(CROSSED_DEPTH) * (p.max(q) as f64 + 5.0);
+        let reserve = Frame::reserve((p, q), reach) + more * ROUNDING * reach;
         let room = DVec3::splat(rough.length(8.0 * reserve_of(surface, &rough, definition)));
         let world = |local: DVec3| rough.origin + local / rough.scale;
         let bounds = Aabb { min: world(bounds.min) - room, max: world(bounds.max) + room };
@@ -105,7 +106,7 @@ impl Patches {
             let room = whole.len() + waiting.len() < MOST_LEAVES && whole.len() * piece.net.len() < MOST_POINTS;
             match cover {
                 Cover::Outside => {}
-                Cover::Crossed if depth < CROSSED_DEPTH.min(PREPARED_DEPTH) && room => {
+                Cover::Crossed if depth < PREPARED_CROSSED_DEPTH && room => {
                     let direction = piece.longer();
                     let [low, high] = piece.halves(direction);
                     waiting.extend([(high, depth + 1), (low, depth + 1)]);
@@ -117,7 +118,7 @@ impl Patches {
             }
         }
         let trim = Trim::new(region, crossed, surface);
-        let hierarchy = Hierarchy::of_pieces(self.frame, whole, self.reserve, Level::new());
+        let hierarchy = Hierarchy::of_pieces(self.frame, whole, self.reserve, Level::new(), &mut Vec::new());
         Hierarchy { trim: Some(trim), ..hierarchy }
     }
 }

@@ -25,6 +25,8 @@ pub(crate) struct Boundary {
     curves: Hierarchy,
     /// What the hierarchy's parameter counts, in ascending order of it.
     parts: Vec<Part>,
+    /// Least and largest parameters of the carrier.
+    domain: (DVec2, DVec2),
     /// How far any of the curves may be from the boundary, in the entity's own coordinates.
     error: f64,
 }
@@ -90,7 +92,8 @@ impl Boundary {
             }
         }
         let curves = Hierarchy::of_curves(frame, nets, patches.rounding(degree));
-        Self { curves, parts, error }
+        let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|along| surface.domain(along));
+        Self { curves, parts, domain: (DVec2::new(u0, v0), DVec2::new(u1, v1)), error }
     }
 
     /// The boundary's nearest point; none where it is proven that none lies within the query's `max_distance`.
@@ -105,7 +108,8 @@ impl Boundary {
         let at = match t {
             0.0 => piece.start,
             1.0 => piece.end,
-            t => point(&piece.points, t),
+            // an ulp outside, where a combination of equal numbers was rounded up
+            t => point(&piece.points, t).clamp(self.domain.0, self.domain.1),
         };
         let is_vertex = (t == 0.0 && piece.begins_curve) || (t == 1.0 && piece.ends_curve);
         Some(BoundaryFoot { at, is_vertex, solution })

@@ -191,7 +191,7 @@ mod tests {
         for case in 0..400 {
             let degree = [(1, 1), (2, 1), (3, 3), (2, 2), (5, 2)][case % 5];
             let rational = case % 2 == 1;
-            let mut weight = |random: &mut Random| if rational { random.between(0.5, 2.0) } else { 1.0 };
+            let weight = |random: &mut Random| if rational { random.between(0.5, 2.0) } else { 1.0 };
             let mut net = Vec::new();
             for i in 0..=degree.0 {
                 for j in 0..=degree.1 {

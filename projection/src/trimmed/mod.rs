@@ -281,6 +281,13 @@ impl Trimmed {
         })
     }
 
+    /// Whether p-curves meet at these parameters, but for rounding.
+    fn is_vertex(&self, at: DVec2) -> bool {
+        let near = |end: DVec2| (end - at).abs().cmple(4.0 * f64::EPSILON * at.abs()).all();
+        let pieces = self.trimming.region().pieces();
+        pieces.iter().any(|piece| (piece.begins_curve && near(piece.start)) || (piece.ends_curve && near(piece.end)))
+    }
+
     /// The answer that a solution at parameters of the region is, as far as the carrier tells; with the outward normal.
     fn written_foot(&self, reader: Reader<'_>, at: DVec2, solution: Solution, method: Method) -> FootPoint {
         let (u, v) = (at.x, at.y);
@@ -297,7 +304,9 @@ impl Trimmed {
         foot.place = match foot.place {
             Place::Edge => Place::TrimEdge,
             Place::Corner => Place::Vertex,
-            Place::Interior | Place::Crease if self.trimming.region().side(at) == Side::Boundary => Place::TrimEdge,
+            Place::Interior | Place::Crease if self.trimming.region().side(at) == Side::Boundary => {
+                if self.is_vertex(at) { Place::Vertex } else { Place::TrimEdge }
+            }
             place => place,
         };
         if self.trimming.reversed() {

@@ -95,10 +95,10 @@ impl<'a> Geometry<'a> {
     /// The profile of a swept surface, and whether its parameter is that of the file: bounded where the file bounds it, since a whole circle or
     /// line may sweep a surface that crosses itself.
     pub(super) fn profile(&self, id: u64) -> Understood<EdgeCurve> {
-        if self.entities.is(id, &["TRIMMED_CURVE"]) {
-            if let Ok(curve) = self.bounded_at(id, 0) {
-                return Ok(EdgeCurve { curve: SourceCurve::Nurbs(curve), own_parameter: false });
-            }
+        if self.entities.is(id, &["TRIMMED_CURVE"])
+            && let Ok(curve) = self.bounded_at(id, 0)
+        {
+            return Ok(EdgeCurve { curve: SourceCurve::Nurbs(curve), own_parameter: false });
         }
         self.curve(id)
     }

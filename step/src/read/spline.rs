@@ -149,7 +149,7 @@ fn implied(values: &Values<'_>, uniform: bool, bezier: bool, degree: usize, poin
     }
     let step = if bezier { degree } else { 1 };
     let inner = points - degree - 1;
-    if inner % step != 0 {
+    if !inner.is_multiple_of(step) {
         return Err(values.refuse(format!("{points} control points do not make Bézier pieces of degree {degree}")));
     }
     let last = (inner / step + 1) as f64;

@@ -205,8 +205,8 @@ fn inches_stay_inches_and_other_units_become_millimetres() {
         #6=LENGTH_MEASURE_WITH_UNIT(LENGTH_MEASURE(25.4),#5);\n#7=DIMENSIONAL_EXPONENTS(1.,0.,0.,0.,0.,0.,0.);\n\
         #1=(CONVERSION_BASED_UNIT('INCH',#6) LENGTH_UNIT() NAMED_UNIT(#7));\n";
     let part = understood(&cube_in(&format!("{inch}{RADIAN}{CONTEXT}")));
-    assert_eq!((part.units, part.tolerance), (Units::Inch, 1e-4));
-    assert_eq!(largest(&part), 1.0);
+    assert_eq!((part.units, largest(&part)), (Units::Inch, 1.0));
+    assert!((part.tolerance - 1e-4).abs() < 1e-18, "{}", part.tolerance);
     let part = understood(&cube_in(&format!("{}{RADIAN}{CONTEXT}", MILLIMETRE.replace("MILLI", "DECI"))));
     assert_eq!(part.units, Units::Millimetre);
     assert!((largest(&part) - 100.0).abs() < 1e-12 && (part.tolerance - 1e-2).abs() < 1e-15);
@@ -456,21 +456,20 @@ fn chains_of_references_end() {
     assert!(part.not_understood[0].reason.contains("nested too deeply"), "{}", part.not_understood[0]);
     let part = with_bottom("#17=TRIMMED_CURVE('',#17,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(0.)),.T.,.PARAMETER.)");
     assert!(part.not_understood[0].reason.contains("nested too deeply"), "{}", part.not_understood[0]);
-    // a composite curve of twice itself would double without end
-    let part = read(
-        file(&format!(
-            "{}{}{}",
-            units(),
-            cylinder().replace("FULL", "0.").replace(
-                "#17=CIRCLE('',#13,2.)",
-                "#17=COMPOSITE_CURVE('',(#70,#70),.F.);\n#70=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#17)"
-            ),
-            product(60, "pin", 58)
-        )),
-        &ReadOptions::default(),
-    );
-    let said = part.expect("its first piece is told of as nested too deeply").not_understood;
-    assert!(said[0].reason.contains("nested too deeply"), "{}", said[0]);
+}
+
+#[test]
+fn curves_that_double_without_end_are_an_error() {
+    let mut chain = "#17=COMPOSITE_CURVE('',(#10000,#10000),.F.)".to_owned();
+    for i in (10_000..10_080).step_by(2) {
+        chain += &format!(";\n#{i}=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#{})", i + 1);
+        chain += &format!(";\n#{}=COMPOSITE_CURVE('',(#{},#{}),.F.)", i + 1, i + 2, i + 2);
+    }
+    chain += ";\n#10080=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#70);\n#70=POLYLINE('',(#19,#20,#19))";
+    let text = cylinder().replace("FULL", "0.").replace("#17=CIRCLE('',#13,2.)", &chain);
+    let text = format!("{}{text}{}", units(), product(60, "pin", 58));
+    let error = read(file(&text), &ReadOptions::default()).expect_err("2^41 pieces");
+    assert!(matches!(error, ReadError::TooManyCopies { .. }), "{error}");
 }
 
 #[test]

@@ -26,24 +26,46 @@ pub(super) struct SpaceCurve {
     pub(super) deviation: f64,
 }
 
-/// The curves of a p-curve on a surface, in its order; none where all of it is one point, as at a pole.
+/// Whether all of a p-curve is one point, as at a pole.
+pub(super) fn is_point(surface: &NurbsSurface, plane: &PlaneCurve, tolerance: f64) -> bool {
+    let samples = Image { surface, plane }.samples(plane.domain());
+    samples.iter().all(|sample| sample.distance(samples[0]) <= tolerance)
+}
+
+/// The edge entity that p-curves, one after the other, follow from end to end; none where they do not.
+pub(super) fn whole_edge(
+    surface: &NurbsSurface,
+    planes: &[&PlaneCurve],
+    (id, definition): &(EntityId, Arc<Definition>),
+    tolerance: f64,
+) -> Option<SpaceCurve> {
+    let Definition::NurbsCurve(curve) = &**definition else { return None };
+    let samples: Vec<DVec3> =
+        planes.iter().flat_map(|plane| Image { surface, plane }.samples(plane.domain())).collect();
+    // there and back is not once
+    let feet = distances(&samples, curve);
+    let slack = 1e-6 * (curve.domain().1 - curve.domain().0);
+    let inner = &feet[1..feet.len() - 1];
+    let turns = |sign: f64| inner.windows(2).any(|pair| sign * (pair[1].1 - pair[0].1) > slack);
+    if turns(1.0) && turns(-1.0) {
+        return None;
+    }
+    let (forward, deviation) = follows(&samples, curve, tolerance)?;
+    Some(SpaceCurve { curve: Arc::new(curve.clone()), forward, entity: Some(*id), deviation })
+}
+
+/// The curves of a p-curve on a surface, in its order.
 pub(super) fn space_curves(
     surface: &NurbsSurface,
     plane: &PlaneCurve,
-    edge: Option<(EntityId, Arc<Definition>)>,
+    edge: Option<&(EntityId, Arc<Definition>)>,
     tolerance: f64,
 ) -> Vec<SpaceCurve> {
+    if let Some(whole) = edge.and_then(|edge| whole_edge(surface, &[plane], edge, tolerance)) {
+        return vec![whole];
+    }
     let image = Image { surface, plane };
     let samples = image.samples(plane.domain());
-    if samples.iter().all(|sample| sample.distance(samples[0]) <= tolerance) {
-        return Vec::new();
-    }
-    if let Some((id, definition)) = edge
-        && let Definition::NurbsCurve(curve) = &*definition
-        && let Some((forward, deviation)) = follows(&samples, curve, tolerance)
-    {
-        return vec![SpaceCurve { curve: Arc::new(curve.clone()), forward, entity: Some(id), deviation }];
-    }
     if let Some(curve) = iso_curve(surface, plane).or_else(|| affine_image(surface, plane)) {
         let (forward, deviation) = follows(&samples, &curve, tolerance).unwrap_or((true, 0.0));
         return vec![SpaceCurve { curve: Arc::new(curve), forward, entity: None, deviation }];

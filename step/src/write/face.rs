@@ -7,7 +7,7 @@ use glam::DVec2;
 use perpend::kernel::{PlaneCurve, Side, Trimming};
 use perpend::{Definition, Direction, EntityId, NurbsSurface};
 
-use super::edge::space_curves;
+use super::edge::{SpaceCurve, is_point, space_curves, whole_edge};
 use super::geometry::{Analytic, known_kind, spline_surface};
 use super::part::FaceSource;
 use super::text::{Id, Text, list, string};
@@ -37,14 +37,11 @@ pub(super) fn face<W: Write>(
     let mut has_outer = false;
     for one in loops(surface, trimming) {
         let mut path: Vec<Used> = Vec::new();
-        for (plane, edge) in &one.curves {
-            let related = edge.and_then(|id| Some((id, edges(id)?)));
-            for curve in space_curves(surface, plane, related, tolerance) {
-                if curve.deviation > 0.1 * tolerance && curve.entity.is_none() {
-                    written.fitted.push(Fitted { face: entity.id(), deviation: curve.deviation });
-                }
-                path.extend(topology.edge(text, &curve, entity.id())?);
+        for curve in path_curves(surface, &one.curves, edges, tolerance) {
+            if curve.deviation > 0.1 * tolerance && curve.entity.is_none() {
+                written.fitted.push(Fitted { face: entity.id(), deviation: curve.deviation });
             }
+            path.extend(topology.edge(text, &curve, entity.id())?);
         }
         if one.left == reversed {
             path.reverse();
@@ -76,6 +73,34 @@ pub(super) fn face<W: Write>(
     let sense = if outward != reversed { ".T." } else { ".F." };
     let name = string(entity.name());
     text.add(format_args!("ADVANCED_FACE({name},{},{carrier},{sense})", list(bounds, |id| id.to_string())))
+}
+
+/// The curves in space of a loop, in its order from any of them on.
+fn path_curves(
+    surface: &NurbsSurface,
+    curves: &[(PlaneCurve, Option<EntityId>)],
+    edges: &dyn Fn(EntityId) -> Option<Arc<Definition>>,
+    tolerance: f64,
+) -> Vec<SpaceCurve> {
+    let extended = curves.iter().filter(|(plane, _)| !is_point(surface, plane, tolerance));
+    let mut curves: Vec<&(PlaneCurve, Option<EntityId>)> = extended.collect();
+    // an edge over a pole has a p-curve on either side of it: they follow each other, maybe from the end of the loop to its beginning
+    let is_same = |a: Option<EntityId>, b: Option<EntityId>| a.is_some() && a == b;
+    let first = (1..curves.len()).find(|i| !is_same(curves[i - 1].1, curves[*i].1)).unwrap_or(0);
+    curves.rotate_left(first);
+    let mut path = Vec::new();
+    for group in curves.chunk_by(|a, b| is_same(a.1, b.1)) {
+        let related = group[0].1.and_then(|id| Some((id, edges(id)?)));
+        let planes: Vec<&PlaneCurve> = group.iter().map(|(plane, _)| plane).collect();
+        match related.as_ref().and_then(|related| whole_edge(surface, &planes, related, tolerance)) {
+            Some(curve) => path.push(curve),
+            None => {
+                let each = |plane: &&PlaneCurve| space_curves(surface, plane, related.as_ref(), tolerance);
+                path.extend(planes.iter().flat_map(each));
+            }
+        }
+    }
+    path
 }
 
 /// Whether `S_u × S_v` has the sense of the standard's normal.

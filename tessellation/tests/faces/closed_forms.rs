@@ -2,8 +2,8 @@
 
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
-use glam::DVec2;
-use perpend_kernel::{Cone, Cylinder, Frame, Plane, Sphere, Torus};
+use glam::{DVec2, DVec3};
+use perpend_kernel::{Cone, Cylinder, Frame, NurbsSurface, Plane, Sphere, Torus};
 use perpend_tessellation::{Limits, Mesh, tessellate};
 
 use crate::oracle::{circle, entered};
@@ -33,6 +33,24 @@ fn areas_of_analytic_shapes() {
     of(&sphere, 4.0 * PI * 4.0);
     of(&zone, 4.0);
     of(&torus, 4.0 * PI * PI * 3.0);
+}
+
+/// A strip between a straight line and one across it: z = x y over the rectangle, ten times as long as wide.
+#[test]
+fn the_area_of_a_twisted_strip_is_approached() {
+    let point = |x: f64, y: f64| DVec3::new(x, y, x * y);
+    let knots = || vec![0.0, 0.0, 1.0, 1.0];
+    let points = [0.0, 1.0].map(|x| [0.0, 10.0].map(|y| point(x, y)).to_vec()).to_vec();
+    let strip = NurbsSurface::new((1, 1), (knots(), knots()), points, None).unwrap();
+    // the mean of sqrt(1 + x² + y²), by the midpoint rule
+    let steps = 1000;
+    let middle = |k: usize, length: f64| (k as f64 + 0.5) / steps as f64 * length;
+    let at = |k: usize| (1.0 + middle(k / steps, 1.0).powi(2) + middle(k % steps, 10.0).powi(2)).sqrt();
+    let area = 10.0 * (0..steps * steps).map(at).sum::<f64>() / (steps * steps) as f64;
+    for (chord, share) in [(0.1, 1e-1), (0.01, 1e-2), (1e-4, 1e-4)] {
+        let found = tessellate(&strip, None, chord, Limits::default()).unwrap().area();
+        assert!((found / area - 1.0).abs() < share, "{chord}: {found} {area}");
+    }
 }
 
 #[test]
