@@ -44,7 +44,8 @@ proptest! {
 
     #[test]
     fn an_application_can_hold_entities_in_its_own_files(model in random::model()) {
-        let entities = model.entities().to_vec();
+        // a face that names another entity is nothing without that
+        let entities: Vec<Entity> = model.entities().iter().filter(|one| one.carrier().is_none()).cloned().collect();
         let text = ron::to_string(&entities).expect("plain data");
         let back: Vec<Entity> = ron::from_str(&text).expect("what was written");
         prop_assert_eq!(back, entities);

@@ -9,6 +9,7 @@ use perpend::{
     Carrier, Cleaning, CurveData, DVec3, Entity, EntityId, Model, NurbsCurve, Shell, TrimmedSurface, TrimmingData,
 };
 
+use proptest::prelude::*;
 use solids::{closed, cuboid, face, planar, plane, rectangle};
 
 /// A model that is right: a carrier, a curve, two faces and a body; each case makes one thing of it wrong.
@@ -284,6 +285,22 @@ fn the_layout_is_kept() {
 )
 "#;
     assert!(text.ends_with(expected), "{text}");
+}
+
+proptest! {
+    #[test]
+    fn a_spoilt_file_gives_an_error_or_a_model_and_never_a_panic(
+        at in 0..GOOD.len(),
+        length in 0..40_usize,
+        new in prop_oneof![Just(String::new()), "[-0-9.e(),:\\[\\]a-zA-Z]{0,6}", Just("1e300".to_owned()), Just("NaN".to_owned())],
+    ) {
+        let end = (at + length).min(GOOD.len());
+        let text = format!("{}{new}{}", &GOOD[..at], &GOOD[end..]);
+        if let Ok(model) = Model::from_ron(&text) {
+            let again = Model::from_ron(&model.to_ron()).expect("what is written reads back");
+            prop_assert_eq!(again, model);
+        }
+    }
 }
 
 #[test]

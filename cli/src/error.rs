@@ -37,7 +37,7 @@ pub(crate) enum CommandError {
     StandardOutput(io::Error),
     #[error("cannot start the worker threads: {0}; ask for fewer with --threads")]
     Threads(#[from] rayon::ThreadPoolBuildError),
-    #[error("{name} has a column `entity`, and --{option} says otherwise: leave out one of them")]
+    #[error("{name} has a column `entity`, and --{option} {}: leave out one of them", if *option == "entity" { "names one too" } else { "asks the whole model" })]
     TwoEntities { name: String, option: &'static str },
     #[error("{} is the model; it would be lost: give another file to -o", path.display())]
     OutputIsModel { path: PathBuf },

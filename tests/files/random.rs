@@ -2,12 +2,13 @@
 
 use std::collections::BTreeMap;
 
+use perpend::glam::DVec2;
 use perpend::kernel::Spacing;
 use perpend::knowledge::{Break, Checked, Irregularity, ParameterPoint, SpanSpeed, Speed, Value};
 use perpend::{
-    Aabb, Basis, Category, Classification, Cleaning, CurveData, DVec3, Definition, DefinitionData, Direction, EntityId,
-    Fingerprint, Intent, Item, Kind, Model, Operation, Origin, Record, Relation, Relationship, Representation,
-    SurfaceData, Units,
+    Aabb, Basis, Carrier, Category, Classification, Cleaning, CurveData, DVec3, Definition, DefinitionData, Direction,
+    EntityId, Fingerprint, Intent, Item, Kind, Model, Operation, Origin, Record, Relation, Relationship,
+    Representation, Shell, SurfaceData, TrimCurveData, TrimLoopData, TrimmedSurface, TrimmingData, Units,
 };
 use proptest::collection::vec;
 use proptest::option;
@@ -234,6 +235,7 @@ fn representation() -> impl Strategy<Value = Representation> {
         (direction(), vec(number(), 0..4)).prop_map(|(direction, knots)| Cleaning::RemovedKnots { direction, knots }),
         (direction(), 1..25_usize).prop_map(|(direction, to)| Cleaning::ReducedDegree { direction, from: to + 1, to }),
         number().prop_map(|weight| Cleaning::DroppedWeights { weight }),
+        (number(), number()).prop_map(|share| Cleaning::TrimClamped { share }),
         (direction(), vec(number(), 0..4), vec(number(), 0..4))
             .prop_map(|(direction, removed, added)| Cleaning::Purged { direction, removed, added }),
     ];
@@ -328,8 +330,69 @@ pub(crate) fn record() -> impl Strategy<Value = Record> {
         })
 }
 
-/// A model of a few entities with records.
+/// A trim of a surface over the unit square: a triangle, as one p-curve or as three, with weights or without.
+fn trimming() -> impl Strategy<Value = TrimmingData> {
+    let corner = || (0.1..0.9_f64, 0.1..0.9_f64).prop_map(DVec2::from);
+    let weights = option::of(vec(0.1..10.0_f64, 4));
+    let corners = (corner(), corner(), corner()).prop_map(|(a, b, c)| [a, b, c, a]);
+    let wide =
+        corners.prop_filter("a triangle with an inside", |[a, b, c, _]| (*b - *a).perp_dot(*c - *a).abs() > 0.05);
+    (wide, weights, any::<bool>(), any::<bool>(), prop_oneof![Just(0.0), 0.0..1.0_f64]).prop_map(
+        |(corners, weights, is_one, reversed, tolerance)| {
+            let curve = |points: &[DVec2], weights: Option<Vec<f64>>| {
+                let last = (points.len() - 1) as f64;
+                let inner = (0..points.len()).map(|k| k as f64);
+                let knots = std::iter::once(0.0).chain(inner).chain([last]).collect();
+                TrimCurveData { degree: 1, knots, points: points.to_vec(), weights, edge: None }
+            };
+            let curves = if is_one {
+                vec![curve(&corners, weights)]
+            } else {
+                corners.windows(2).map(|side| curve(side, weights.as_ref().map(|w| w[..2].to_vec()))).collect()
+            };
+            TrimmingData { reversed, tolerance, loops: vec![TrimLoopData { outer: true, curves }] }
+        },
+    )
+}
+
+/// A trimmed face: of a carrier of its own, or of another entity.
+fn faces() -> impl Strategy<Value = Vec<(String, TrimmingData, bool, Option<[f64; 3]>)>> {
+    vec((text(), trimming(), any::<bool>(), option::of(prop::array::uniform3(0.0..=1.0_f64))), 0..4)
+}
+
+/// A model of a few entities with records, and of faces and a body of them.
 pub(crate) fn model() -> impl Strategy<Value = Model> {
+    (plain(), faces()).prop_map(|(mut model, faces)| {
+        let at = |u: f64, v: f64| DVec3::new(u, v, u * v);
+        let data = SurfaceData {
+            degree: (1, 1),
+            knots: (vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]),
+            control_points: vec![vec![at(0.0, 0.0), at(0.0, 1.0)], vec![at(1.0, 0.0), at(1.0, 1.0)]],
+            weights: None,
+        };
+        let carrier = model.insert("carrier", data.clone()).expect("a valid surface");
+        let mut ids = Vec::new();
+        for (name, trimming, is_own, colour) in faces {
+            let surface = if is_own {
+                Carrier::Own(perpend::NurbsSurface::enter(data.clone()).expect("a valid surface").0)
+            } else {
+                Carrier::Ref(carrier)
+            };
+            let face = TrimmedSurface { surface, trimming };
+            let id = model.insert_trimmed(&name, face).expect("a valid face");
+            model.set_colour(id, colour).expect("a valid colour");
+            ids.push(id);
+        }
+        if !ids.is_empty() {
+            let shells = vec![Shell { faces: ids, closed: false }, Shell { faces: vec![carrier], closed: true }];
+            model.insert_body("body", shells).expect("faces");
+        }
+        model
+    })
+}
+
+/// A model of a few entities with records.
+fn plain() -> impl Strategy<Value = Model> {
     let units = prop::sample::select(vec![Units::Millimetre, Units::Inch, Units::Micrometre, Units::Metre]);
     (units, vec((text(), definition(), option::of(record())), 0..4)).prop_map(|(units, entities)| {
         let mut model = Model::new();

@@ -2,6 +2,7 @@
 
 mod bad_models;
 mod bad_points;
+mod bodies;
 mod check_and_show;
 mod explain;
 mod export;
