@@ -6,6 +6,7 @@ mod bodies;
 mod check_and_show;
 mod explain;
 mod export;
+mod import;
 mod intent;
 mod learn;
 mod output;
