@@ -30,6 +30,9 @@ pub(crate) fn measure(run: &Run, table: &mut Table) -> Result<(), Failure> {
     Ok(())
 }
 
+/// How many queries to single faces judge the answers of a model at most: of a large one, not all points are judged.
+const JUDGED: usize = 2_000_000;
+
 /// Microseconds a query.
 pub(crate) struct Times {
     pub whole: f64,
@@ -41,16 +44,22 @@ pub(crate) fn times(
     model: &Model,
     points: &[DVec3],
     passes: usize,
-    judged: &mut dyn FnMut(&str, Faults),
+    tell: &mut dyn FnMut(&str, Faults),
 ) -> Result<Times, Failure> {
     let options = QueryOptions::default();
     let found = answers(model, points)?;
     let judge = Judge::new(model);
-    let faults = points.par_iter().zip(&found).map(|(p, (_, foot))| {
-        let nearest = judge.one_by_one(*p).expect("the point was asked before")[0].1;
-        judge.faults(*p, foot, nearest)
-    });
-    judged(&format!("{} points", points.len()), faults.collect::<Vec<_>>().into_iter().sum());
+    let step = (points.len() * model.len()).div_ceil(JUDGED).max(1);
+    let judged: Vec<Faults> = points
+        .par_iter()
+        .zip(&found)
+        .step_by(step)
+        .map(|(p, (_, foot))| {
+            let nearest = judge.one_by_one(*p).expect("the point was asked before")[0].1;
+            judge.faults(*p, foot, nearest)
+        })
+        .collect();
+    tell(&format!("{} points judged", judged.len()), judged.into_iter().sum());
     let alone: Vec<(&Arc<Prepared>, Query)> = points
         .iter()
         .zip(&found)
