@@ -1,7 +1,5 @@
 //! Entities that are asked together: the walk over boxes, with entities in place of pieces.
 
-use std::collections::HashSet;
-
 use glam::DVec3;
 use perpend_kernel::{Aabb, EntityId};
 use perpend_projection::{BoxTree, Candidate, FootPoint, Query, QueryOptions, Scratch};
@@ -9,11 +7,11 @@ use perpend_projection::{BoxTree, Candidate, FootPoint, Query, QueryOptions, Scr
 use crate::entity::Entity;
 use crate::model::Model;
 
+/// Entities that are farther than the nearest by less than this share of the group's size are asked where they are nearest: steers effort alone.
+const NEARLY: f64 = 1e-6;
+
 /// An entity and its nearest point.
 pub(crate) type Found = (EntityId, FootPoint);
-
-/// A box beyond this share of the best distance, squared, may hold an entity that ties, and hardly one that is proven farther.
-const TIGHT: f64 = 0.999;
 
 /// Entities that are asked together.
 #[derive(Debug, Clone)]
@@ -44,7 +42,7 @@ impl Group {
 
     /// Those whose boxes may lie within a distance, in order of id.
     pub(crate) fn near(&self, model: &Model, p: DVec3, distance: f64) -> Vec<usize> {
-        let near = self.candidates(model, p, distance + self.rounding(p), |_| true);
+        let near = self.candidates(model, p, distance + self.rounding(p));
         let mut items: Vec<usize> = near.into_iter().map(|candidate| candidate.item as usize).collect();
         items.sort_unstable_by_key(|item| self.entity(model, *item).id);
         items
@@ -59,34 +57,31 @@ impl Group {
     pub(crate) fn nearest(&self, model: &Model, query: &Query, scratch: &mut Scratch) -> Option<Found> {
         let asked = Asked { group: self, model, query };
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
-        let (first, _) = self.tree.descend(query.point)?;
-        let mut found = asked.visit(first, scratch);
+        let mut found: Option<Found> = None;
+        // the least lower bound of those that were asked
+        let mut lower_bound = f64::INFINITY;
         // entities whose bound does not say that they are beyond the limit
-        let mut open: Vec<u32> = (found.1.lower_bound <= limit).then_some(first).into_iter().collect();
-        let candidates = self.candidates(model, query.point, found.1.distance, |item| item != first);
-        for (k, candidate) in candidates.into_iter().enumerate() {
-            let best = found.1.distance;
-            if candidate.distance_squared >= square_above(best) {
-                break; // the others are farther still
+        let mut open: Vec<u32> = Vec::new();
+        let outset = limit + self.rounding(query.point);
+        self.tree.visit_nearest(query.point, square_above(outset), |item| {
+            let reach = found.map_or(f64::INFINITY, |found| found.1.distance).min(limit);
+            if asked.may_be_near(item, reach, scratch) {
+                let one = asked.visit(item, scratch);
+                lower_bound = lower_bound.min(one.1.lower_bound);
+                if one.1.lower_bound <= limit {
+                    open.push(item);
+                }
+                if found.is_none_or(|found| (one.1.distance, one.0) < (found.1.distance, found.0)) {
+                    found = Some(one);
+                }
             }
-            // That an entity is farther is cheaper to prove than where it is nearest. The nearest box is likely to hold the nearest
-            // entity, and one at the best distance to tie with it: those are asked at once.
-            let is_promising = k == 0 || candidate.distance_squared > TIGHT * best * best;
-            if !is_promising && !asked.may_be_within(candidate.item, best, scratch) {
-                continue;
-            }
-            let other = asked.visit(candidate.item, scratch);
-            open.extend((other.1.lower_bound <= limit).then_some(candidate.item));
-            let lower_bound = found.1.lower_bound.min(other.1.lower_bound);
-            if (other.1.distance, other.0) < (found.1.distance, found.0) {
-                found = other;
-            }
-            found.1.lower_bound = lower_bound;
-        }
+            square_above(found.map_or(outset, |found| found.1.distance.min(outset)))
+        });
+        let mut found = found?;
         // The entities that were not asked are no nearer, as far as boxes in the model's coordinates tell: the distance to
         // one rounds by a few ulps of these, which counts where the model lies far from its origin.
-        let proven = (found.1.distance - self.rounding(query.point)).max(0.0);
-        found.1.lower_bound = found.1.lower_bound.min(proven);
+        let proven = (found.1.distance.min(limit) - self.rounding(query.point)).max(0.0);
+        found.1.lower_bound = lower_bound.min(proven);
         let is_found = found.1.distance <= limit || open.iter().any(|item| asked.may_be_within(*item, limit, scratch));
         is_found.then_some(found)
     }
@@ -94,46 +89,33 @@ impl Group {
     /// The `k` nearest entities with their nearest points, the nearest first.
     pub(crate) fn nearest_k(&self, model: &Model, k: usize, query: &Query, scratch: &mut Scratch) -> Vec<Found> {
         let mut found: Vec<Found> = Vec::new();
-        let Some((first, _)) = self.tree.descend(query.point).filter(|_| k > 0) else { return found };
+        if k == 0 {
+            return found;
+        }
         let asked = Asked { group: self, model, query };
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
         let rounding = self.rounding(query.point);
         // farther than this, an entity is none of those sought
         let reach = |found: &[Found]| if found.len() < k { limit } else { limit.min(found[k - 1].1.distance) };
-        let mut met: HashSet<u32> = HashSet::new();
-        let mut radius = asked.visit(first, scratch).1.distance.min(limit);
-        loop {
-            let near = self.candidates(model, query.point, radius + rounding, |item| !met.contains(&item));
-            for candidate in near {
-                let within = reach(&found);
-                if candidate.distance_squared >= square_above(within + rounding) {
-                    break; // the others are farther still
-                }
-                met.insert(candidate.item);
-                if !asked.may_be_within(candidate.item, within, scratch) {
-                    continue;
-                }
-                let one = asked.visit(candidate.item, scratch);
-                if one.1.distance <= limit || asked.may_be_within(candidate.item, limit, scratch) {
+        self.tree.visit_nearest(query.point, square_above(limit + rounding), |item| {
+            if asked.may_be_near(item, reach(&found), scratch) {
+                let one = asked.visit(item, scratch);
+                if one.1.distance <= limit || asked.may_be_within(item, limit, scratch) {
                     let at = found.partition_point(|other| (other.1.distance, other.0) < (one.1.distance, one.0));
                     found.insert(at, one);
                     found.truncate(k);
                 }
             }
-            let within = reach(&found);
-            let is_done = within <= radius || radius > self.farthest(query.point);
-            if is_done {
-                return found;
-            }
-            radius = if found.len() < k { within.min(2.0 * radius + self.bounds.diagonal() / 64.0) } else { within };
-        }
+            square_above(reach(&found) + rounding)
+        });
+        found
     }
 
     /// All entities that are not proven to lie beyond the maximum distance of the query, with their nearest points, the nearest first.
     pub(crate) fn within(&self, model: &Model, query: &Query, scratch: &mut Scratch) -> Vec<Found> {
         let asked = Asked { group: self, model, query };
         let radius = query.options.max_distance.unwrap_or(f64::INFINITY) + self.rounding(query.point);
-        let near = self.candidates(model, query.point, radius, |_| true);
+        let near = self.candidates(model, query.point, radius);
         let mut found: Vec<Found> = near
             .into_iter()
             .filter_map(|candidate| {
@@ -145,17 +127,10 @@ impl Group {
         found
     }
 
-    /// A distance beyond which no box lies.
-    fn farthest(&self, p: DVec3) -> f64 {
-        let away = (p - self.bounds.min).abs().max((p - self.bounds.max).abs());
-        2.0 * away.length()
-    }
-
     /// The entities whose boxes may lie within a distance, the nearest box first, then the lowest id.
-    fn candidates(&self, model: &Model, p: DVec3, distance: f64, is_wanted: impl Fn(u32) -> bool) -> Vec<Candidate> {
+    fn candidates(&self, model: &Model, p: DVec3, distance: f64) -> Vec<Candidate> {
         let mut candidates: Vec<Candidate> = Vec::new();
         self.tree.nearer_than(p, square_above(distance), &mut candidates);
-        candidates.retain(|candidate| is_wanted(candidate.item));
         let id = |candidate: &Candidate| model.entities[self.items[candidate.item as usize]].id;
         candidates.sort_unstable_by(|a, b| a.distance_squared.total_cmp(&b.distance_squared).then(id(a).cmp(&id(b))));
         candidates
@@ -179,6 +154,12 @@ impl<'a> Asked<'a> {
     fn may_be_within(self, item: u32, limit: f64, scratch: &mut Scratch) -> bool {
         let query = self.limited(Some(limit).filter(|limit| limit.is_finite()));
         self.entity(item).prepared().project(&query, scratch).is_some()
+    }
+
+    /// Whether an entity is not proven to lie beyond a distance by more than a share of the group's size. That costs less than to prove it beyond the distance
+    /// itself, where it is about as far as that: faces that share an edge are.
+    fn may_be_near(self, item: u32, distance: f64, scratch: &mut Scratch) -> bool {
+        !distance.is_finite() || self.may_be_within(item, distance + NEARLY * self.group.bounds.diagonal(), scratch)
     }
 
     /// An entity's answer without a limit: it then bounds its distance, also where it is too far.

@@ -3,6 +3,9 @@
 //! The same tree serves the pieces of an entity and the entities of a model. A node holds the boxes of its four children side by side, so that
 //! one pass over the node's lanes tells the distances to all of them.
 
+use std::cmp::Ordering;
+use std::collections::BinaryHeap;
+
 use fearless_simd::prelude::*;
 use fearless_simd::{Level, dispatch, f64x4};
 use glam::DVec3;
@@ -39,7 +42,7 @@ struct Node {
 }
 
 /// A child: an item, or an inner node.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Eq, PartialOrd, Ord)]
 enum Child {
     Item(u32),
     Inner(u32),
@@ -83,6 +86,16 @@ impl Node {
             sum += apart * apart;
         }
         sum
+    }
+}
+
+impl Node {
+    /// Squares of the distances from `p` to the children's boxes, and to their middles, times four.
+    #[inline(always)]
+    fn seen_from<S: Simd>(&self, simd: S, p: DVec3) -> ([f64; WIDTH], [f64; WIDTH]) {
+        let (distances, middles) = (self.distances_squared(simd, p), self.middles_squared(simd, p));
+        let lanes = [0, 1, 2, 3];
+        (lanes.map(|lane| distances[lane]), lanes.map(|lane| middles[lane]))
     }
 }
 
@@ -140,6 +153,32 @@ impl BoxTree {
         dispatch!(self.level, simd => self.nearest_item(simd, p))
     }
 
+    /// Visits items, the nearest box first, among equally near boxes the one with the nearest middle, while their boxes are nearer to `p` than the square root of a
+    /// limit: of `limit_squared` at first, and then of what the last visit returned.
+    pub fn visit_nearest(&self, p: DVec3, mut limit_squared: f64, mut visit: impl FnMut(u32) -> f64) {
+        let mut waiting: BinaryHeap<Waiting> = BinaryHeap::with_capacity(64);
+        let mut next = (!self.nodes.is_empty()).then_some(Child::Inner(0));
+        while let Some(child) = next {
+            match child {
+                Child::Item(item) => limit_squared = visit(item),
+                Child::Inner(at) => self.expand(at, p, limit_squared, &mut waiting),
+            }
+            next = waiting.pop().filter(|first| first.distance_squared < limit_squared).map(|first| first.child);
+        }
+    }
+
+    /// Adds the children of a node whose boxes are near enough.
+    fn expand(&self, at: u32, p: DVec3, limit_squared: f64, waiting: &mut BinaryHeap<Waiting>) {
+        let node = &self.nodes[at as usize];
+        let (distances, middles) = dispatch!(self.level, simd => node.seen_from(simd, p));
+        for lane in 0..WIDTH {
+            let (distance_squared, middle_squared) = (distances[lane], middles[lane]);
+            if distance_squared < limit_squared {
+                waiting.push(Waiting { distance_squared, middle_squared, child: node.children[lane] });
+            }
+        }
+    }
+
     #[inline(always)]
     fn nearest_item<S: Simd>(&self, simd: S, p: DVec3) -> Option<(u32, u64)> {
         let mut looked = 0;
@@ -159,6 +198,33 @@ impl BoxTree {
                 Child::Inner(at) => node = &self.nodes[at as usize],
             }
         }
+    }
+}
+
+/// A child that waits for its turn: the nearest box comes first, then the one with the nearest middle, then the lowest index.
+#[derive(Debug, Clone, Copy, PartialEq)]
+struct Waiting {
+    distance_squared: f64,
+    middle_squared: f64,
+    child: Child,
+}
+
+impl Eq for Waiting {}
+
+impl Ord for Waiting {
+    /// The greatest is the first out of a heap.
+    fn cmp(&self, other: &Self) -> Ordering {
+        other
+            .distance_squared
+            .total_cmp(&self.distance_squared)
+            .then(other.middle_squared.total_cmp(&self.middle_squared))
+            .then(other.child.cmp(&self.child))
+    }
+}
+
+impl PartialOrd for Waiting {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
     }
 }
 
@@ -226,8 +292,24 @@ mod tests {
             items.sort_unstable();
             let expected: Vec<u32> =
                 (0..boxes.len() as u32).filter(|i| boxes[*i as usize].distance_squared(p) < limit * limit).collect();
-            prop_assert_eq!(items, expected);
+            prop_assert_eq!(&items, &expected);
             prop_assert!(tree.descend(p).is_some());
+            let (mut visited, mut last) = (Vec::new(), 0.0);
+            tree.visit_nearest(p, limit * limit, |item| {
+                let distance = boxes[item as usize].distance_squared(p);
+                assert!(distance >= last, "the nearest comes first");
+                last = distance;
+                visited.push(item);
+                limit * limit
+            });
+            visited.sort_unstable();
+            prop_assert_eq!(&visited, &expected);
+            let mut few = Vec::new();
+            tree.visit_nearest(p, f64::INFINITY, |item| {
+                few.push(item);
+                boxes[item as usize].distance_squared(p)
+            });
+            prop_assert_eq!(few.len(), 1, "no other box is nearer than the nearest");
         }
     }
 }

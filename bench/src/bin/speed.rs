@@ -88,7 +88,9 @@ fn main() -> Result<(), Failure> {
         return worst::replay(&file);
     }
     let run = Run { sets: Sets::read()?, passes: arguments.passes as usize, long: arguments.long };
-    let mut table = Table::scaled_by(calibration::evaluation_micros(&run)?);
+    let wavy = run.sets.surfaces.iter().find(|entity| entity.name == "wavy-40x40").ok_or("wavy-40x40 is absent")?;
+    let bicubic = scan::surface(wavy.prepared.definition())?;
+    let mut table = Table::scaled_by(calibration::evaluation_micros(bicubic, run.passes));
     let parts = if arguments.parts.is_empty() { Part::value_variants() } else { &arguments.parts };
     let done = parts.iter().try_for_each(|part| match part {
         Part::Corpora => corpora::measure(&run, &mut table),
