@@ -2,7 +2,7 @@
 
 use glam::DVec3;
 use perpend_kernel::{Aabb, EntityId};
-use perpend_projection::{BoxTree, Candidate, FootPoint, Query, QueryOptions, Scratch};
+use perpend_projection::{BoxTree, Candidate, FootPoint, Place, Query, QueryOptions, Scratch};
 
 use crate::entity::Entity;
 use crate::model::Model;
@@ -20,6 +20,7 @@ pub(crate) struct Group {
     items: Vec<usize>,
     /// Over their boxes, in the order of `items`.
     tree: BoxTree,
+    boxes: Vec<Aabb>,
     /// The box of them all.
     pub(crate) bounds: Aabb,
 }
@@ -28,7 +29,7 @@ impl Group {
     pub(crate) fn new(model: &Model, items: Vec<usize>) -> Self {
         let boxes = boxes(&model.entities, &items);
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, one| all.join(*one));
-        Self { items, tree: BoxTree::new(&boxes), bounds }
+        Self { items, tree: BoxTree::new(&boxes), boxes, bounds }
     }
 
     /// How many there are.
@@ -38,6 +39,11 @@ impl Group {
 
     pub(crate) fn entity<'m>(&self, model: &'m Model, item: usize) -> &'m Entity {
         &model.entities[self.items[item]]
+    }
+
+    /// Whether a point lies in the box of an entity, or hardly beside it.
+    fn holds(&self, item: u32, p: DVec3) -> bool {
+        self.boxes[item as usize].distance_squared(p) <= (NEARLY * self.bounds.diagonal()).powi(2)
     }
 
     /// Those whose boxes may lie within a distance, in order of id.
@@ -65,7 +71,9 @@ impl Group {
         let outset = limit + self.rounding(query.point);
         self.tree.visit_nearest(query.point, square_above(outset), |item| {
             let reach = found.map_or(f64::INFINITY, |found| found.1.distance).min(limit);
-            if asked.may_be_near(item, reach, scratch) {
+            // a face that has the foot in its box, on an edge, is likely as near
+            let is_beside = found.is_some_and(|found| is_on_border(&found.1) && self.holds(item, found.1.point));
+            if is_beside || asked.may_be_near(item, reach, scratch) {
                 let one = asked.visit(item, scratch);
                 lower_bound = lower_bound.min(one.1.lower_bound);
                 if one.1.lower_bound <= limit {
@@ -191,6 +199,11 @@ fn bounds(entity: &Entity) -> Aabb {
         Some(_) => entity.prepared().bounds(),
         None => entity.definition.control_box(),
     }
+}
+
+/// Whether a foot lies where faces meet others.
+fn is_on_border(foot: &FootPoint) -> bool {
+    matches!(foot.place, Place::TrimEdge | Place::Vertex | Place::Edge | Place::Corner)
 }
 
 /// Above the square of `distance` by more than rounding: a box that is not below it is at least `distance` away.

@@ -31,7 +31,7 @@ pub(crate) fn measure(run: &Run, table: &mut Table) -> Result<(), Failure> {
 }
 
 /// How many queries to single faces judge the answers of a model at most: of a large one, not all points are judged.
-const JUDGED: usize = 2_000_000;
+const JUDGED: usize = 500_000;
 
 /// Microseconds a query.
 pub(crate) struct Times {
@@ -49,7 +49,7 @@ pub(crate) fn times(
     let options = QueryOptions::default();
     let found = answers(model, points)?;
     let judge = Judge::new(model);
-    let step = (points.len() * model.len()).div_ceil(JUDGED).max(1);
+    let step = (points.len() * judge.len()).div_ceil(JUDGED).max(1);
     let judged: Vec<Faults> = points
         .par_iter()
         .zip(&found)
