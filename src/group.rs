@@ -2,12 +2,12 @@
 
 use glam::DVec3;
 use perpend_kernel::{Aabb, EntityId};
-use perpend_projection::{BoxTree, Candidate, FootPoint, Query, QueryOptions, Scratch};
+use perpend_projection::{BoxTree, Candidate, FootPoint, Place, Query, QueryOptions, Scratch};
 
 use crate::entity::Entity;
 use crate::model::Model;
 
-/// Entities that are farther than the nearest by less than this share of the group's size are asked where they are nearest: steers effort alone.
+/// Entities that are farther than the nearest by less than this share of the group's size are taken for about as near: steers effort alone.
 const NEARLY: f64 = 1e-6;
 
 /// An entity and its nearest point.
@@ -20,6 +20,7 @@ pub(crate) struct Group {
     items: Vec<usize>,
     /// Over their boxes, in the order of `items`.
     tree: BoxTree,
+    boxes: Vec<Aabb>,
     /// The box of them all.
     pub(crate) bounds: Aabb,
 }
@@ -28,7 +29,7 @@ impl Group {
     pub(crate) fn new(model: &Model, items: Vec<usize>) -> Self {
         let boxes = boxes(&model.entities, &items);
         let bounds = boxes.iter().fold(Aabb::EMPTY, |all, one| all.join(*one));
-        Self { items, tree: BoxTree::new(&boxes), bounds }
+        Self { items, tree: BoxTree::new(&boxes), boxes, bounds }
     }
 
     /// How many there are.
@@ -38,6 +39,11 @@ impl Group {
 
     pub(crate) fn entity<'m>(&self, model: &'m Model, item: usize) -> &'m Entity {
         &model.entities[self.items[item]]
+    }
+
+    /// Whether a point lies in the box of an entity, or hardly beside it.
+    fn holds(&self, item: u32, p: DVec3) -> bool {
+        self.boxes[item as usize].distance_squared(p) <= (NEARLY * self.bounds.diagonal()).powi(2)
     }
 
     /// Those whose boxes may lie within a distance, in order of id.
@@ -57,27 +63,44 @@ impl Group {
     pub(crate) fn nearest(&self, model: &Model, query: &Query, scratch: &mut Scratch) -> Option<Found> {
         let asked = Asked { group: self, model, query };
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
-        let mut found: Option<Found> = None;
+        let near = asked.nearly();
+        let mut best: Option<Best> = None;
         // the least lower bound of those that were asked
         let mut lower_bound = f64::INFINITY;
         // entities whose bound does not say that they are beyond the limit
         let mut open: Vec<u32> = Vec::new();
         let outset = limit + self.rounding(query.point);
         self.tree.visit_nearest(query.point, square_above(outset), |item| {
-            let reach = found.map_or(f64::INFINITY, |found| found.1.distance).min(limit);
-            if asked.may_be_near(item, reach, scratch) {
-                let one = asked.visit(item, scratch);
-                lower_bound = lower_bound.min(one.1.lower_bound);
-                if one.1.lower_bound <= limit {
+            let next = match best {
+                None => Some(asked.best(item, scratch)),
+                // a face that has the foot in its box, on an edge, is likely as near
+                Some(best) if is_on_border(&best.found.1) && self.holds(item, best.found.1.point) => {
+                    Some(asked.best(item, scratch))
+                }
+                Some(best) => asked.best_within(item, best.found.1.distance.min(limit) + near, scratch),
+            };
+            if let Some(mut next) = next {
+                if let Some(best) = &mut best
+                    && next.found.1.distance + near >= best.found.1.distance
+                {
+                    // which is nearer, and by which digits, their own answers tell
+                    *best = best.without_limit(asked, scratch);
+                    next = next.without_limit(asked, scratch);
+                }
+                let (id, foot) = next.found;
+                lower_bound = lower_bound.min(foot.lower_bound);
+                if foot.lower_bound <= limit {
                     open.push(item);
                 }
-                if found.is_none_or(|found| (one.1.distance, one.0) < (found.1.distance, found.0)) {
-                    found = Some(one);
+                let is_nearer = |best: Best| (foot.distance, id) < (best.found.1.distance, best.found.0);
+                if best.is_none_or(is_nearer) {
+                    best = Some(next);
                 }
             }
-            square_above(found.map_or(outset, |found| found.1.distance.min(outset)))
+            square_above(best.map_or(outset, |best| best.found.1.distance.min(outset)))
         });
-        let mut found = found?;
+        let mut found = best?.without_limit(asked, scratch).found;
+        lower_bound = lower_bound.min(found.1.lower_bound);
         // The entities that were not asked are no nearer, as far as boxes in the model's coordinates tell: the distance to
         // one rounds by a few ulps of these, which counts where the model lies far from its origin.
         let proven = (found.1.distance.min(limit) - self.rounding(query.point)).max(0.0);
@@ -94,11 +117,12 @@ impl Group {
         }
         let asked = Asked { group: self, model, query };
         let limit = query.options.max_distance.unwrap_or(f64::INFINITY);
-        let rounding = self.rounding(query.point);
+        let (rounding, near) = (self.rounding(query.point), asked.nearly());
         // farther than this, an entity is none of those sought
         let reach = |found: &[Found]| if found.len() < k { limit } else { limit.min(found[k - 1].1.distance) };
         self.tree.visit_nearest(query.point, square_above(limit + rounding), |item| {
-            if asked.may_be_near(item, reach(&found), scratch) {
+            let within = reach(&found);
+            if !within.is_finite() || asked.may_be_within(item, within + near, scratch) {
                 let one = asked.visit(item, scratch);
                 if one.1.distance <= limit || asked.may_be_within(item, limit, scratch) {
                     let at = found.partition_point(|other| (other.1.distance, other.0) < (one.1.distance, one.0));
@@ -137,6 +161,22 @@ impl Group {
     }
 }
 
+/// The nearest entity so far.
+#[derive(Debug, Clone, Copy)]
+struct Best {
+    item: u32,
+    found: Found,
+    /// Whether it was asked with a limit: its own answer may differ in the last digits.
+    is_limited: bool,
+}
+
+impl Best {
+    /// The same with the entity's own answer.
+    fn without_limit(self, asked: Asked<'_>, scratch: &mut Scratch) -> Self {
+        if self.is_limited { asked.best(self.item, scratch) } else { self }
+    }
+}
+
 /// A query to a group.
 #[derive(Clone, Copy)]
 struct Asked<'a> {
@@ -156,10 +196,22 @@ impl<'a> Asked<'a> {
         self.entity(item).prepared().project(&query, scratch).is_some()
     }
 
-    /// Whether an entity is not proven to lie beyond a distance by more than a share of the group's size. That costs less than to prove it beyond the distance
-    /// itself, where it is about as far as that: faces that share an edge are.
-    fn may_be_near(self, item: u32, distance: f64, scratch: &mut Scratch) -> bool {
-        !distance.is_finite() || self.may_be_within(item, distance + NEARLY * self.group.bounds.diagonal(), scratch)
+    /// Distances that differ by less are compared by the entities' own answers. A limit that is farther than the nearest by this is also proven at less cost
+    /// than one at the nearest itself, where an entity is about as far as that: faces that share an edge are.
+    fn nearly(self) -> f64 {
+        (NEARLY * self.group.bounds.diagonal()).max(2.0 * self.query.options.gap.unwrap_or(0.0))
+    }
+
+    /// An entity as the nearest so far.
+    fn best(self, item: u32, scratch: &mut Scratch) -> Best {
+        Best { item, found: self.visit(item, scratch), is_limited: false }
+    }
+
+    /// The same, asked with a limit; none where it is proven to lie beyond that.
+    fn best_within(self, item: u32, limit: f64, scratch: &mut Scratch) -> Option<Best> {
+        let entity = self.entity(item);
+        let foot = entity.prepared().project(&self.limited(Some(limit)), scratch)?;
+        Some(Best { item, found: (entity.id, foot), is_limited: true })
     }
 
     /// An entity's answer without a limit: it then bounds its distance, also where it is too far.
@@ -191,6 +243,11 @@ fn bounds(entity: &Entity) -> Aabb {
         Some(_) => entity.prepared().bounds(),
         None => entity.definition.control_box(),
     }
+}
+
+/// Whether a foot lies where faces meet others.
+fn is_on_border(foot: &FootPoint) -> bool {
+    matches!(foot.place, Place::TrimEdge | Place::Vertex | Place::Edge | Place::Corner)
 }
 
 /// Above the square of `distance` by more than rounding: a box that is not below it is at least `distance` away.

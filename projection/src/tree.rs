@@ -153,7 +153,7 @@ impl BoxTree {
         dispatch!(self.level, simd => self.nearest_item(simd, p))
     }
 
-    /// Visits items, the nearest box first, among equally near boxes the one with the nearest middle, while their boxes are nearer to `p` than the square root of a
+    /// Visits items, the nearest box first, among boxes that hold `p` the one with the nearest middle, while their boxes are nearer to `p` than the square root of a
     /// limit: of `limit_squared` at first, and then of what the last visit returned.
     pub fn visit_nearest(&self, p: DVec3, mut limit_squared: f64, mut visit: impl FnMut(u32) -> f64) {
         let mut waiting: BinaryHeap<Waiting> = BinaryHeap::with_capacity(64);
@@ -163,7 +163,7 @@ impl BoxTree {
                 Child::Item(item) => limit_squared = visit(item),
                 Child::Inner(at) => self.expand(at, p, limit_squared, &mut waiting),
             }
-            next = waiting.pop().filter(|first| first.distance_squared < limit_squared).map(|first| first.child);
+            next = waiting.pop().filter(|first| first.key < limit_squared).map(|first| first.child);
         }
     }
 
@@ -172,9 +172,9 @@ impl BoxTree {
         let node = &self.nodes[at as usize];
         let (distances, middles) = dispatch!(self.level, simd => node.seen_from(simd, p));
         for lane in 0..WIDTH {
-            let (distance_squared, middle_squared) = (distances[lane], middles[lane]);
-            if distance_squared < limit_squared {
-                waiting.push(Waiting { distance_squared, middle_squared, child: node.children[lane] });
+            let key = if distances[lane] > 0.0 { distances[lane] } else { -middles[lane].recip() };
+            if key < limit_squared {
+                waiting.push(Waiting { key, child: node.children[lane] });
             }
         }
     }
@@ -201,11 +201,11 @@ impl BoxTree {
     }
 }
 
-/// A child that waits for its turn: the nearest box comes first, then the one with the nearest middle, then the lowest index.
+/// A child that waits for its turn: that with the least key comes first, then the one with the lowest index.
 #[derive(Debug, Clone, Copy, PartialEq)]
 struct Waiting {
-    distance_squared: f64,
-    middle_squared: f64,
+    /// The square of the distance to its box; where the point lies in that, a negative number that rises with the distance to its middle.
+    key: f64,
     child: Child,
 }
 
@@ -214,11 +214,7 @@ impl Eq for Waiting {}
 impl Ord for Waiting {
     /// The greatest is the first out of a heap.
     fn cmp(&self, other: &Self) -> Ordering {
-        other
-            .distance_squared
-            .total_cmp(&self.distance_squared)
-            .then(other.middle_squared.total_cmp(&self.middle_squared))
-            .then(other.child.cmp(&self.child))
+        other.key.total_cmp(&self.key).then_with(|| other.child.cmp(&self.child))
     }
 }
 

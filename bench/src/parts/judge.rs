@@ -23,6 +23,11 @@ impl<'m> Judge<'m> {
         Self { model, faces: faces.map(|face| face.id()).collect(), gap: GAP * size }
     }
 
+    /// How many faces there are.
+    pub(crate) fn len(&self) -> usize {
+        self.faces.len()
+    }
+
     /// The distances of all faces, each asked alone, in ascending order.
     pub(crate) fn one_by_one(&self, p: DVec3) -> Result<Vec<(EntityId, f64)>, QueryError> {
         let query = Query::new(p, QueryOptions::default())?;

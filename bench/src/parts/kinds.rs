@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::Run;
 use crate::judge::Judge;
 use crate::table::{Goal, Table};
-use crate::timing::least_seconds;
+use crate::timing::least_seconds_of;
 use crate::whole::{MANY, answers};
 
 /// How many nearest faces are asked for.
@@ -29,19 +29,19 @@ pub(crate) fn measure(run: &Run, table: &mut Table) -> Result<(), Failure> {
         let judged: Vec<[Faults; 2]> = points.par_iter().map(|p| faults(&judge, model, *p, radius)).collect();
         table.faults(format!("{name}, {K} nearest"), judged.iter().map(|faults| faults[0]).sum());
         table.faults(format!("{name}, within"), judged.iter().map(|faults| faults[1]).sum());
-        let mut listed = 0;
-        let [nearest, within] = least_seconds(
+        let listed: usize = model.within_all(points, radius, &options).iter().flatten().map(|list| list.len()).sum();
+        let [nearest, within] = least_seconds_of(
             run.passes,
+            points.len(),
             [
-                &mut || {
-                    for p in points {
+                &mut |slice| {
+                    for p in &points[slice] {
                         let _ = std::hint::black_box(model.nearest_k(*p, K, &options));
                     }
                 },
-                &mut || {
-                    listed = 0;
-                    for p in points {
-                        listed += std::hint::black_box(model.within(*p, radius, &options)).map_or(0, |list| list.len());
+                &mut |slice| {
+                    for p in &points[slice] {
+                        let _ = std::hint::black_box(model.within(*p, radius, &options));
                     }
                 },
             ],
@@ -106,16 +106,17 @@ fn signed(model: &Model, name: &str, points: &[DVec3], passes: usize, table: &mu
     }
     table.line(format!("{name}, signed distances: not those of the whole model"), Goal::AtMost(0.0), "", wrong as f64);
     table.line(format!("{name}, signed distances: without an answer"), Goal::AtMost(0.0), "", undecided as f64);
-    let [signed, plain] = least_seconds(
+    let [signed, plain] = least_seconds_of(
         passes,
+        asked.len(),
         [
-            &mut || {
-                for (body, p) in &asked {
+            &mut |slice| {
+                for (body, p) in &asked[slice] {
                     let _ = std::hint::black_box(model.signed_distance(*body, *p, &options));
                 }
             },
-            &mut || {
-                for (body, p) in &asked {
+            &mut |slice| {
+                for (body, p) in &asked[slice] {
                     let _ = std::hint::black_box(model.nearest_of(*body, *p, &options));
                 }
             },

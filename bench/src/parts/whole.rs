@@ -10,7 +10,7 @@ use rayon::prelude::*;
 use crate::Run;
 use crate::judge::Judge;
 use crate::table::{Goal, Table};
-use crate::timing::least_seconds;
+use crate::timing::least_seconds_of;
 
 /// Models with fewer faces are one face more or less.
 pub(crate) const MANY: usize = 50;
@@ -31,7 +31,7 @@ pub(crate) fn measure(run: &Run, table: &mut Table) -> Result<(), Failure> {
 }
 
 /// How many queries to single faces judge the answers of a model at most: of a large one, not all points are judged.
-const JUDGED: usize = 2_000_000;
+const JUDGED: usize = 200_000;
 
 /// Microseconds a query.
 pub(crate) struct Times {
@@ -49,7 +49,7 @@ pub(crate) fn times(
     let options = QueryOptions::default();
     let found = answers(model, points)?;
     let judge = Judge::new(model);
-    let step = (points.len() * model.len()).div_ceil(JUDGED).max(1);
+    let step = (points.len() * judge.len()).div_ceil(JUDGED).max(1);
     let judged: Vec<Faults> = points
         .par_iter()
         .zip(&found)
@@ -66,16 +66,17 @@ pub(crate) fn times(
         .map(|(p, (id, _))| Ok((model.entity(*id).ok_or("an id of the model")?.prepared(), Query::new(*p, options)?)))
         .collect::<Result<_, Failure>>()?;
     let mut scratch = Scratch::default();
-    let [whole, alone] = least_seconds(
+    let [whole, alone] = least_seconds_of(
         passes,
+        points.len(),
         [
-            &mut || {
-                for p in points {
+            &mut |slice| {
+                for p in &points[slice] {
                     let _ = std::hint::black_box(model.nearest(*p, &options));
                 }
             },
-            &mut || {
-                for (prepared, query) in &alone {
+            &mut |slice| {
+                for (prepared, query) in &alone[slice] {
                     std::hint::black_box(prepared.project(query, &mut scratch));
                 }
             },

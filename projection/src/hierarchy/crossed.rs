@@ -152,6 +152,9 @@ impl Hierarchy {
         let on_boundary =
             |point: DVec3, distance: f64| Foot { leaf: NO_LEAF, s: 0.0, t: 0.0, next: (0.0, 0.0), point, distance };
         let mut state = self.state(query, on_boundary(anchor, anchor.distance(point)), lists);
+        if self.is_beyond(query, &mut state, candidates) {
+            return TrimmedFoot::Beyond(state.done);
+        }
         let mut visited = self.tree.descend(point).map(|(first, boxes)| {
             state.done.boxes += boxes;
             self.visit_first(query, first, &mut state)

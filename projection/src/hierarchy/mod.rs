@@ -213,9 +213,25 @@ impl Hierarchy {
         let (first, boxes) = self.tree.descend(point).expect("an entity has leaves");
         let mut state = self.state(query, self.part(first).middle(point), lists);
         state.done.boxes += boxes;
+        if self.is_beyond(query, &mut state, candidates) {
+            return None;
+        }
         let visited = self.visit_first(query, first, &mut state);
         self.walk(Some(visited), &mut state, hint, memory, candidates);
+        if state.is_clearly_beyond() {
+            return None;
+        }
         self.within(query, self.solution(&mut state, self.coincidence(query)), &state)
+    }
+
+    /// Whether the boxes of the leaves tell that nothing is within the query's `max_distance`, with its gap for rounding.
+    fn is_beyond(&self, query: &Query, state: &mut state::State<'_>, candidates: &mut Vec<Candidate>) -> bool {
+        if query.options.max_distance.is_none() {
+            return false;
+        }
+        candidates.clear();
+        state.done.boxes += self.tree.nearer_than(state.point, squared(state.goal.limit), candidates);
+        candidates.is_empty()
     }
 
     /// The nearest point of the entity, from a proposal of its parameters: proved, or corrected where another point is nearer by more

@@ -75,6 +75,12 @@ impl State<'_> {
         self.goal.tau(self.best.distance)
     }
 
+    /// Whether it is proven that nothing lies within the maximum distance, by so much that the last digits of the best point do not matter.
+    pub(super) fn is_clearly_beyond(&self) -> bool {
+        let Goal { gap, wanted, .. } = self.goal;
+        self.best.distance > wanted + 2.0 * gap && self.tau().min(self.open) >= wanted
+    }
+
     /// How far a foot may be to count as one as near as the best.
     pub(super) fn reach(&self) -> f64 {
         self.goal.reach(self.best.distance)
