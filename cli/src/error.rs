@@ -19,6 +19,8 @@ pub(crate) enum CommandError {
     UnknownBody { model: PathBuf, id: EntityId, known: String },
     #[error("{}: {source}", model.display())]
     Body { model: PathBuf, source: BodyError },
+    #[error("{}: {id} is a body, which has no definition of its own: name one of its faces ({faces}, …)", model.display())]
+    IsBody { model: PathBuf, id: EntityId, faces: String },
     #[error("{}: {source}", model.display())]
     Replay { model: PathBuf, source: ReplayError },
     #[error("{}: the model has no entities, so nothing is nearest: add one", model.display())]
@@ -56,7 +58,13 @@ pub(crate) enum CommandError {
 impl CommandError {
     /// The entity of this id is not in the model.
     pub(crate) fn unknown_entity(path: PathBuf, model: &Model, id: EntityId) -> Self {
-        Self::UnknownEntity { model: path, id, known: known_ids(model) }
+        match model.body(id) {
+            Some(body) => {
+                let faces = body.faces().take(3).map(|face| face.to_string()).collect::<Vec<_>>().join(", ");
+                Self::IsBody { model: path, id, faces }
+            }
+            None => Self::UnknownEntity { model: path, id, known: known_ids(model) },
+        }
     }
 
     /// No body of the model has this id.

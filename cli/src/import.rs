@@ -7,9 +7,13 @@ use perpend_step::{Import, NotUnderstood, ReadOptions, import_file};
 
 use crate::args::ImportArguments;
 use crate::error::CommandError;
+use crate::project::is_same_file;
 use crate::report::{self, counted};
 
 pub(crate) fn run(arguments: &ImportArguments) -> Result<ExitCode, CommandError> {
+    if is_same_file(&arguments.output, &arguments.part) {
+        return Err(CommandError::OutputIsInput { path: arguments.output.clone() });
+    }
     let defaults = ReadOptions::default();
     let options = ReadOptions {
         max_bytes: arguments.max_megabytes.map_or(defaults.max_bytes, |megabytes| megabytes << 20),

@@ -11,6 +11,9 @@ use crate::check::{form, solid};
 use crate::error::CommandError;
 use crate::report::{self, counted, rounded};
 
+/// No column of a table is wider than this many letters.
+const WIDEST: usize = 60;
+
 pub(crate) fn run(arguments: &ShowArguments) -> Result<ExitCode, CommandError> {
     let mut model = arguments.trust.read(&arguments.model)?;
     if arguments.json {
@@ -196,15 +199,23 @@ fn table(model: &Model, entities: &[&Entity], bodies: &[&Body]) -> String {
     let mut widths = [0; 8];
     for row in &rows {
         for (width, cell) in widths.iter_mut().zip(row) {
-            *width = cell.chars().count().max(*width);
+            *width = cell.chars().count().min(WIDEST).max(*width);
         }
     }
     let mut text = String::new();
     for row in &rows {
-        let cells: Vec<String> = row.iter().zip(widths).map(|(cell, width)| format!("{cell:width$}")).collect();
+        let cells: Vec<String> = row.iter().zip(widths).map(|(cell, width)| padded(cell, width)).collect();
         let _ = writeln!(text, "{}", cells.join("  ").trim_end());
     }
     text
+}
+
+/// A cell of a table, filled up to its column's width; what is longer is cut there, and says so.
+fn padded(cell: &str, width: usize) -> String {
+    if cell.chars().count() <= width {
+        return format!("{cell:width$}");
+    }
+    cell.chars().take(width - 1).chain(['…']).collect()
 }
 
 /// Which parts of the record there are.
