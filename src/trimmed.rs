@@ -110,7 +110,7 @@ impl Model {
     ///
     /// let mut model = Model::new();
     /// let plate = Plane::new(Frame::WORLD, (0.0, 4.0), (0.0, 4.0))?.to_nurbs()?;
-    /// let corners = [(0.0, 0.0), (2.0, 0.0), (0.0, 2.0)].map(|(u, v)| DVec2::new(u, v));
+    /// let corners = [(0.0, 0.0), (0.5, 0.0), (0.0, 0.5)].map(|(u, v)| DVec2::new(u, v));
     /// let side = |from: DVec2, to: DVec2| TrimCurveData {
     ///     degree: 1,
     ///     knots: vec![0.0, 0.0, 1.0, 1.0],
@@ -122,7 +122,8 @@ impl Model {
     /// let trimming =
     ///     TrimmingData { reversed: false, tolerance: 1e-6, loops: vec![TrimLoopData { outer: true, curves }] };
     /// let face = model.insert_trimmed("gusset", TrimmedSurface { surface: Carrier::Own(plate), trimming })?;
-    /// assert!(model.entity(face).is_some_and(|entity| entity.trimming().is_some()));
+    /// // the plate goes on under the point, the gusset does not
+    /// assert!((model.project(face, DVec3::new(3.0, 0.0, 0.0))?.distance - 1.0).abs() < 1e-9);
     /// # Ok::<(), Box<dyn std::error::Error>>(())
     /// ```
     ///

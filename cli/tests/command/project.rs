@@ -246,7 +246,7 @@ fn usage_errors_name_the_remedy() {
     workshop.run(&["project", "model.ron"]).ends(2, "<POINTS>");
     workshop.run(&[]).ends(2, "Usage: perpend");
     let two = workshop.project("entity,x,y,z\n1,1,2,3\n", &["--entity", "1"]);
-    two.ends(2, "points.csv has a column `entity`, and --entity says otherwise: leave out one of them");
+    two.ends(2, "points.csv has a column `entity`, and --entity names one too: leave out one of them");
     assert_eq!(two.out, "");
 }
 
