@@ -81,3 +81,28 @@ fn what_is_no_part_is_refused() {
     let run = workshop.run(&["import", "large.step", "-o", "part.ron", "--max-megabytes", "1"]);
     run.ends(1, "large.step: the file has 1048577 bytes, more than the 1048576 that are allowed");
 }
+
+#[test]
+fn the_part_is_not_overwritten() {
+    let workshop = Workshop::new();
+    fs::copy(example("bracket.step"), workshop.path("part.step")).unwrap();
+    workshop.run(&["import", "part.step", "-o", "part.step"]).ends(2, "part.step is an input; it would be lost");
+    assert_eq!(fs::read(example("bracket.step")).unwrap(), fs::read(workshop.path("part.step")).unwrap());
+}
+
+/// A body has no definition that could be explained; a name of a hundred thousand letters does not fill a table.
+#[test]
+fn bodies_and_long_names_are_told_apart() {
+    let workshop = Workshop::new();
+    let part = example("bracket.step");
+    workshop.run(&["import", part.to_str().unwrap(), "-o", "part.ron"]).ends(0, "1 body");
+    let text = workshop.read("part.ron");
+    let body: u64 = text.rsplit("id: ").next().and_then(|rest| rest.split(',').next()?.parse().ok()).unwrap();
+    let body = body.to_string();
+    workshop.run(&["explain", "part.ron", "--entity", &body]).ends(1, "is a body, which has no definition of its own");
+    let long = text.replacen("name: \"", &format!("name: \"{}", "n".repeat(100_000)), 1);
+    fs::write(workshop.path("long.ron"), long).unwrap();
+    let run = workshop.run(&["show", "long.ron"]);
+    run.ends(0, "");
+    assert!(run.out.contains('…') && run.out.lines().all(|line| line.chars().count() < 300));
+}
