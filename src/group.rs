@@ -89,7 +89,7 @@ impl Group {
                 }
                 let (id, foot) = next.found;
                 lower_bound = lower_bound.min(foot.lower_bound);
-                if foot.lower_bound <= limit {
+                if limit.is_finite() && foot.lower_bound <= limit {
                     open.push(item);
                 }
                 let is_nearer = |best: Best| (foot.distance, id) < (best.found.1.distance, best.found.0);
