@@ -194,3 +194,98 @@ fn free_curves_are_a_curve_set_each() {
     assert!(text.contains("GEOMETRIC_CURVE_SET('bow',"), "{text}");
     assert!(text.contains("CARTESIAN_POINT('',(1.,0.3333333333333333,0.))"), "{text}");
 }
+
+/// A part of a square of side 10 at a height, between loops of corners; the first is the outer one.
+fn plate(height: f64, tolerance: f64, loops: &[&[(f64, f64)]]) -> TrimmedSurface {
+    let frame = Frame { centre: height * DVec3::Z, ..Frame::WORLD };
+    let of = |(index, corners): (usize, &&[(f64, f64)])| TrimLoopData {
+        outer: index == 0,
+        curves: (0..corners.len())
+            .map(|i| TrimCurveData {
+                degree: 1,
+                knots: vec![0.0, 0.0, 1.0, 1.0],
+                points: [i, (i + 1) % corners.len()].map(|k| DVec2::from(corners[k]) / 10.0).to_vec(),
+                weights: None,
+                edge: None,
+            })
+            .collect(),
+    };
+    TrimmedSurface {
+        surface: Carrier::Own(Plane::new(frame, (0.0, 10.0), (0.0, 10.0)).unwrap().to_nurbs().unwrap()),
+        trimming: TrimmingData { reversed: false, tolerance, loops: loops.iter().enumerate().map(of).collect() },
+    }
+}
+
+#[test]
+fn faces_and_holes_below_the_coarsest_tolerance_keep_their_edges() {
+    let square: &[_] = &[(1.0, 1.0), (9.0, 1.0), (9.0, 9.0), (1.0, 9.0)];
+    let small: &[_] = &[(5.0, 5.0), (5.4, 5.0), (5.4, 5.4), (5.0, 5.4)];
+    let hole: &[_] = &[(5.0, 5.0), (5.0, 5.3), (5.3, 5.3), (5.3, 5.0)];
+    let sliver: &[_] = &[(1.0, 1.0), (9.0, 1.0), (9.0, 1.4), (1.0, 1.4)];
+    let plates = [
+        ("sloppy", plate(0.0, 0.5, &[square])),
+        ("small", plate(7.0, 1e-6, &[small])),
+        ("holed", plate(14.0, 1e-6, &[square, hole])),
+        ("small and sloppy", plate(21.0, 0.5, &[small])),
+        ("holed and sloppy", plate(28.0, 0.5, &[square, hole])),
+        ("thin and sloppy", plate(35.0, 0.5, &[sliver])),
+    ];
+    for is_body in [false, true] {
+        let mut before = Model::new();
+        let faces = plates.iter().map(|(name, plate)| before.insert_trimmed(*name, plate.clone()).unwrap()).collect();
+        if is_body {
+            before.insert_body("plates", vec![Shell { faces, closed: false }]).unwrap();
+        }
+        let mut text = Vec::new();
+        let written = write(&before, WriteOptions::default(), &mut text).unwrap();
+        assert_eq!((written.faces, written.empty, written.fitted), (6, vec![], vec![]));
+        assert!(!String::from_utf8_lossy(&text).contains("VERTEX_LOOP"));
+        let part = read(text.clone(), &ReadOptions::default()).unwrap();
+        assert_eq!(part.not_understood, []);
+        let counts: Vec<Vec<usize>> = part
+            .faces
+            .iter()
+            .map(|face| {
+                let uses = |one: &SourceLoop| match one {
+                    SourceLoop::Edges { uses, .. } => uses.len(),
+                    SourceLoop::Vertex(_) => 0,
+                };
+                face.loops.iter().map(uses).collect()
+            })
+            .collect();
+        assert_eq!(counts, [vec![4], vec![4], vec![4, 4], vec![4], vec![4, 4], vec![4]]);
+        assert_eq!(part.edges.len(), 32);
+        let after = import(text, &ReadOptions::default()).unwrap().model;
+        for height in 0..6 {
+            for (x, y) in [(0.5, 0.5), (5.2, 5.2), (5.15, 5.15), (6.0, 6.0), (5.0, 1.2), (8.0, 8.0)] {
+                let p = DVec3::new(x, y, 7.0 * f64::from(height) + 0.1);
+                let [a, b] = [&before, &after]
+                    .map(|model| model.nearest(p, &QueryOptions::default()).unwrap().unwrap().1.distance);
+                assert!((a - b).abs() < 1e-9, "{p}: {a} {b}");
+            }
+        }
+    }
+}
+
+#[test]
+fn a_round_hole_of_two_arcs_below_the_tolerance_stays_open() {
+    let mut face = plate(0.0, 0.5, &[&[(1.0, 1.0), (9.0, 1.0), (9.0, 9.0), (1.0, 9.0)]]);
+    let whole = circle(0.015, false).curves.remove(0);
+    let weights = whole.weights.unwrap();
+    // clockwise, in halves
+    let half = |from: usize| TrimCurveData {
+        degree: 2,
+        knots: vec![0.0, 0.0, 0.0, 1.0, 1.0, 2.0, 2.0, 2.0],
+        points: (0..5).map(|k| whole.points[from - k]).collect(),
+        weights: Some((0..5).map(|k| weights[from - k]).collect()),
+        edge: None,
+    };
+    face.trimming.loops.push(TrimLoopData { outer: false, curves: vec![half(8), half(4)] });
+    let mut model = Model::new();
+    model.insert_trimmed("holed", face).unwrap();
+    let part = read(text(&model), &ReadOptions::default()).unwrap();
+    assert_eq!(part.edges.len(), 4 + 2);
+    let after = import(text(&model), &ReadOptions::default()).unwrap().model;
+    let (_, foot) = after.nearest(DVec3::new(5.0, 5.0, 0.0), &QueryOptions::default()).unwrap().unwrap();
+    assert!((foot.distance - 0.15).abs() < 1e-6, "{}", foot.distance);
+}

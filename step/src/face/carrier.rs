@@ -200,6 +200,13 @@ impl Carrier {
         }
     }
 
+    /// Whether the surface has no border at the ends of a coordinate: it is periodic, or both ends are poles.
+    pub(super) fn is_closed(&self, coordinate: usize) -> bool {
+        let (low, high) = self.limits[coordinate];
+        let is_pole = |end: f64| self.poles.iter().any(|pole| pole.across == coordinate && pole.value == end);
+        self.periods[coordinate].is_some() || is_pole(low) && is_pole(high)
+    }
+
     /// Where a period of a coordinate begins.
     pub(super) fn base(&self, coordinate: usize) -> f64 {
         match &self.form {

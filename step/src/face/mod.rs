@@ -152,6 +152,10 @@ pub(crate) fn build(
     if carrier.periods == [None; 2] && !rings.is_empty() {
         rings = nested(rings).into_iter().map(|(ring, _)| ring).collect();
     }
+    // a vertex or nothing bounds all of a closed surface, and no part of another
+    if rings.is_empty() && !(0..2).all(|k| carrier.is_closed(k)) {
+        return Err(FaceError::Unbounded);
+    }
     let off = rings.iter().flat_map(|ring| &ring.pieces).fold(0.0_f64, |most, piece| most.max(piece.off));
     let opened = match open::open(&carrier, &own, rings.clone()) {
         // a file with its loops the wrong way round

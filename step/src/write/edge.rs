@@ -26,10 +26,31 @@ pub(super) struct SpaceCurve {
     pub(super) deviation: f64,
 }
 
-/// Whether all of a p-curve is one point, as at a pole.
-pub(super) fn is_point(surface: &NurbsSurface, plane: &PlaneCurve, tolerance: f64) -> bool {
+/// Of the coordinates of a surface: points nearer than this share are one within the rounding of their evaluation.
+const ROUNDING: f64 = 1e-12;
+
+/// Of a curve's extent: ends nearer than this share, and than the tolerance, are one.
+const CLOSED: f64 = 0.01;
+
+/// Whether all of a p-curve is one point within rounding, as at a pole. However short, what is longer bounds the face.
+pub(super) fn is_point(surface: &NurbsSurface, plane: &PlaneCurve) -> bool {
     let samples = Image { surface, plane }.samples(plane.domain());
-    samples.iter().all(|sample| sample.distance(samples[0]) <= tolerance)
+    let rounding = ROUNDING * surface.control_box().reach();
+    samples.iter().all(|sample| sample.distance(samples[0]) <= rounding)
+}
+
+/// How far samples of a curve are from its start at most.
+pub(super) fn extent(curve: &NurbsCurve) -> f64 {
+    let (from, to) = curve.domain();
+    let at = |k: usize| curve.point(from + k as f64 / (SAMPLES - 1) as f64 * (to - from));
+    (1..SAMPLES).map(|k| at(k).distance(at(0))).fold(0.0, f64::max)
+}
+
+/// How far apart the ends of a curve are; none where it is closed.
+pub(super) fn ends_apart(curve: &NurbsCurve, tolerance: f64) -> Option<f64> {
+    let (from, to) = curve.domain();
+    let apart = curve.point(from).distance(curve.point(to));
+    (apart > tolerance.min(CLOSED * extent(curve))).then_some(apart)
 }
 
 /// The edge entity that p-curves, one after the other, follow from end to end; none where they do not.

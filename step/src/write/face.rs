@@ -22,7 +22,7 @@ struct Loop {
     curves: Vec<(PlaneCurve, Option<EntityId>)>,
 }
 
-/// Writes a face. `edges` finds the definition of an edge entity.
+/// Writes a face, with its own tolerance; none where its loops are points within rounding. `edges` finds the definition of an edge entity.
 pub(super) fn face<W: Write>(
     text: &mut Text<W>,
     topology: &mut Topology,
@@ -30,35 +30,43 @@ pub(super) fn face<W: Write>(
     edges: &dyn Fn(EntityId) -> Option<Arc<Definition>>,
     tolerance: f64,
     written: &mut Written,
-) -> io::Result<Id> {
+) -> io::Result<Option<Id>> {
     let FaceSource { entity, surface, trimming, .. } = *source;
     let reversed = trimming.is_some_and(Trimming::reversed);
+    let mut paths = Vec::new();
+    for one in loops(surface, trimming) {
+        let path = path_curves(surface, &one.curves, edges, tolerance);
+        // a loop that is a point bounds nothing; a loop of one vertex would stand for all of the carrier
+        if !path.is_empty() {
+            paths.push((one, path));
+        }
+    }
+    if paths.is_empty() {
+        written.empty.push(entity.id());
+        return Ok(None);
+    }
+    let all: Vec<&SpaceCurve> = paths.iter().flat_map(|(_, path)| path).collect();
+    topology.short_edges(text, &all, tolerance)?;
     let mut bounds = Vec::new();
     let mut has_outer = false;
-    for one in loops(surface, trimming) {
+    for (one, curves) in paths {
         let mut path: Vec<Used> = Vec::new();
-        for curve in path_curves(surface, &one.curves, edges, tolerance) {
+        for curve in curves {
             if curve.deviation > 0.1 * tolerance && curve.entity.is_none() {
                 written.fitted.push(Fitted { face: entity.id(), deviation: curve.deviation });
             }
-            path.extend(topology.edge(text, &curve, entity.id())?);
+            path.push(topology.edge(text, &curve, entity.id(), tolerance)?);
         }
         if one.left == reversed {
             path.reverse();
             path.iter_mut().for_each(|used| used.forward = !used.forward);
         }
-        let chain = if path.is_empty() {
-            let at = one.curves[0].0.start();
-            let (_, vertex) = topology.vertex(text, surface.point(at.x, at.y))?;
-            text.add(format_args!("VERTEX_LOOP('',{vertex})"))?
-        } else {
-            let mut oriented = Vec::with_capacity(path.len());
-            for Used { edge, forward } in path {
-                let sense = if forward { ".T." } else { ".F." };
-                oriented.push(text.add(format_args!("ORIENTED_EDGE('',*,*,{edge},{sense})"))?);
-            }
-            text.add(format_args!("EDGE_LOOP('',{})", list(oriented, |id| id.to_string())))?
-        };
+        let mut oriented = Vec::with_capacity(path.len());
+        for Used { edge, forward } in path {
+            let sense = if forward { ".T." } else { ".F." };
+            oriented.push(text.add(format_args!("ORIENTED_EDGE('',*,*,{edge},{sense})"))?);
+        }
+        let chain = text.add(format_args!("EDGE_LOOP('',{})", list(oriented, |id| id.to_string())))?;
         // a face has one of these at most
         let outer = one.outer && !has_outer;
         has_outer |= outer;
@@ -72,7 +80,8 @@ pub(super) fn face<W: Write>(
     };
     let sense = if outward != reversed { ".T." } else { ".F." };
     let name = string(entity.name());
-    text.add(format_args!("ADVANCED_FACE({name},{},{carrier},{sense})", list(bounds, |id| id.to_string())))
+    let bounds = list(bounds, |id| id.to_string());
+    text.add(format_args!("ADVANCED_FACE({name},{bounds},{carrier},{sense})")).map(Some)
 }
 
 /// The curves in space of a loop, in its order from any of them on.
@@ -82,7 +91,7 @@ fn path_curves(
     edges: &dyn Fn(EntityId) -> Option<Arc<Definition>>,
     tolerance: f64,
 ) -> Vec<SpaceCurve> {
-    let extended = curves.iter().filter(|(plane, _)| !is_point(surface, plane, tolerance));
+    let extended = curves.iter().filter(|(plane, _)| !is_point(surface, plane));
     let mut curves: Vec<&(PlaneCurve, Option<EntityId>)> = extended.collect();
     // an edge over a pole has a p-curve on either side of it: they follow each other, maybe from the end of the loop to its beginning
     let is_same = |a: Option<EntityId>, b: Option<EntityId>| a.is_some() && a == b;

@@ -51,6 +51,8 @@ pub struct Written {
     pub curves: usize,
     /// The edges that were fitted and are farther from their trims than a tenth of the tolerance.
     pub fitted: Vec<Fitted>,
+    /// The faces whose loops are points within rounding: they are left out.
+    pub empty: Vec<EntityId>,
 }
 
 /// Writes a model as a STEP file of AP214, in its own unit; numbers read back bit for bit.
@@ -59,26 +61,28 @@ pub struct Written {
 /// and ellipses of edges and free curves; everything else as B-splines, as it is defined. A face is bounded by its loops, or by the border of
 /// its surface's domain. The curve of an edge is the related entity where that follows the trim, else the exact image of the p-curve
 /// (iso-curves, planes), else a cubic that is fitted to it within a tenth of the tolerance. Edges are shared by the faces of a body where
-/// they lie on each other within the tolerance, and by other faces where they are one entity. What is a part of something else, as the edges of faces, is
-/// written there alone.
+/// they lie on each other within the tolerance, and by other faces where they are one entity. The tolerance is each face's own; the uncertainty
+/// that the file states is the largest of them. What is a part of something else, as the edges of faces, is written there alone.
 ///
 /// # Errors
 ///
 /// Those of the writer.
 pub fn write(model: &Model, options: WriteOptions<'_>, out: impl Write) -> io::Result<Written> {
     let part = Part::new(model, options.only);
-    let tolerance = tolerance(model, &part);
+    let finest = finest(model);
+    let coarsest = coarsest(&part, finest);
     let edges = |id: EntityId| model.entity(id).map(|entity| Arc::clone(entity.definition()));
     let mut writer = Writer {
         text: Text::new(out),
         styles: Styles::default(),
         edges: &edges,
-        tolerance,
+        finest,
+        coarsest,
         written: Written::default(),
     };
     product::header(&mut writer.text, options.name)?;
     let shape = product::product(&mut writer.text, options.name)?;
-    let context = product::context(&mut writer.text, model.units(), tolerance)?;
+    let context = product::context(&mut writer.text, model.units(), coarsest)?;
     let origin = placement(&mut writer.text, DVec3::ZERO, DVec3::Z, DVec3::X)?;
     let whole = writer.text.add(format_args!("SHAPE_REPRESENTATION('',({origin}),{context})"))?;
     writer.text.add(format_args!("SHAPE_DEFINITION_REPRESENTATION({shape},{whole})"))?;
@@ -86,9 +90,9 @@ pub fn write(model: &Model, options: WriteOptions<'_>, out: impl Write) -> io::R
     for body in &part.bodies {
         writer.body(body, &mut solids, &mut sheets)?;
     }
-    let mut topology = Topology::new(tolerance, false);
+    let mut topology = Topology::new(coarsest, false);
     for face in &part.faces {
-        let id = writer.face(&mut topology, face)?;
+        let Some(id) = writer.face(&mut topology, face)? else { continue };
         let shell = writer.text.add(format_args!("OPEN_SHELL('',({id}))"))?;
         let name = string(face.entity.name());
         sheets.push(writer.text.add(format_args!("SHELL_BASED_SURFACE_MODEL({name},({shell}))"))?);
@@ -122,38 +126,49 @@ pub fn write(model: &Model, options: WriteOptions<'_>, out: impl Write) -> io::R
     Ok(written)
 }
 
-/// The largest tolerance of a trim, but at least 1e-7 of the size: the length below which points are one.
-fn tolerance(model: &Model, part: &Part<'_>) -> f64 {
+/// No tolerance of a face is taken to be smaller: 1e-7 of the model's size.
+fn finest(model: &Model) -> f64 {
+    (1e-7 * model.size()).max(f64::MIN_POSITIVE)
+}
+
+/// The largest tolerance of a face.
+fn coarsest(part: &Part<'_>, finest: f64) -> f64 {
     let of_bodies = part.bodies.iter().flat_map(|body| body.shells.iter().flat_map(|shell| &shell.faces));
-    let trims = of_bodies.chain(&part.faces).filter_map(|face| face.trimming.map(Trimming::tolerance));
-    trims.fold((1e-7 * model.size()).max(f64::MIN_POSITIVE), f64::max)
+    of_bodies.chain(&part.faces).filter_map(|face| face.trimming.map(Trimming::tolerance)).fold(finest, f64::max)
 }
 
 struct Writer<'a, W> {
     text: Text<W>,
     styles: Styles,
     edges: &'a dyn Fn(EntityId) -> Option<Arc<Definition>>,
-    tolerance: f64,
+    finest: f64,
+    coarsest: f64,
     written: Written,
 }
 
 impl<W: Write> Writer<'_, W> {
-    fn face(&mut self, topology: &mut Topology, source: &FaceSource<'_>) -> io::Result<Id> {
-        let id = face::face(&mut self.text, topology, source, self.edges, self.tolerance, &mut self.written)?;
+    fn face(&mut self, topology: &mut Topology, source: &FaceSource<'_>) -> io::Result<Option<Id>> {
+        let tolerance = source.trimming.map_or(self.finest, |trimming| trimming.tolerance().max(self.finest));
+        let Some(id) = face::face(&mut self.text, topology, source, self.edges, tolerance, &mut self.written)? else {
+            return Ok(None);
+        };
         self.written.faces += 1;
         if let Some(colour) = source.colour {
             self.styles.surface(&mut self.text, id, colour)?;
         }
-        Ok(id)
+        Ok(Some(id))
     }
 
     /// A solid where all shells are closed: the first is the outer one, the others bound voids. Otherwise a model of its surfaces.
     fn body(&mut self, body: &BodySource<'_>, solids: &mut Vec<Id>, sheets: &mut Vec<Id>) -> io::Result<()> {
-        let mut topology = Topology::new(self.tolerance, true);
+        let mut topology = Topology::new(self.coarsest, true);
         let mut shells = Vec::new();
         for shell in &body.shells {
-            let faces =
-                shell.faces.iter().map(|face| self.face(&mut topology, face)).collect::<io::Result<Vec<Id>>>()?;
+            let faces = shell.faces.iter().filter_map(|face| self.face(&mut topology, face).transpose());
+            let faces = faces.collect::<io::Result<Vec<Id>>>()?;
+            if faces.is_empty() {
+                continue;
+            }
             let keyword = if shell.closed { "CLOSED_SHELL" } else { "OPEN_SHELL" };
             shells.push(self.text.add(format_args!("{keyword}('',{})", list(faces, |id| id.to_string())))?);
         }

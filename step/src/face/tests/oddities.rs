@@ -241,6 +241,24 @@ fn a_sphere_with_a_vertex_loop_is_whole() {
 }
 
 #[test]
+fn an_open_spline_surface_without_edges_is_refused_and_a_closed_one_is_whole() {
+    let flat = perpend::Plane::new(Frame::WORLD, (0.0, 1.0), (0.0, 1.0)).unwrap().to_nurbs().unwrap();
+    let tube = perpend::Cylinder::new(Frame::WORLD, 1.0, (0.0, 2.0), (0.0, TAU)).unwrap().to_nurbs().unwrap();
+    let ball = perpend::Sphere::whole(Frame::WORLD, 1.5).unwrap().to_nurbs().unwrap();
+    for vertex in [None, Some(DVec3::X)] {
+        let on = |surface: &perpend::NurbsSurface| {
+            let mut sketch = Sketch::on(SourceSurface::Nurbs(surface.clone()));
+            sketch.loops.extend(vertex.map(SourceLoop::Vertex));
+            sketch
+        };
+        assert_eq!(on(&flat).build().err(), Some(FaceError::Unbounded));
+        assert_eq!(on(&tube).build().err(), Some(FaceError::Unbounded));
+        let (_, _, area) = on(&ball).built(1, 0);
+        assert_near(area, 2.0 * TAU * 1.5 * 1.5);
+    }
+}
+
+#[test]
 fn a_cap_around_the_pole_reaches_the_pole() {
     for (forward, height) in [(true, 1.0 - 0.5_f64.sqrt()), (false, 1.0 + 0.5_f64.sqrt())] {
         let mut sketch = Sketch::on(SourceSurface::Sphere { frame: Frame::WORLD, radius: 1.0 });
@@ -606,16 +624,6 @@ fn a_torus_that_passes_its_axis_is_one_of_its_shells() {
         let (_, _, area) = sketch.bound(&[(first, true)]).bound(&[(second, false)]).built(1, 0);
         assert_near(area, sign * TAU * minor * (major * (to - from) + minor * (to.sin() - from.sin())));
     }
-}
-
-#[test]
-fn a_spline_without_loops_is_whole() {
-    let (built, trimming, _) = Sketch::on(SourceSurface::Nurbs(tube())).built(1, 0);
-    assert_eq!(trimming.region().bounds(), (DVec2::ZERO, DVec2::new(14.0, 1.0)));
-    let part = tube().split(Direction::U, 7.0).expect("inside").0;
-    let (open, trimming, _) = Sketch::on(SourceSurface::Nurbs(part)).built(1, 0);
-    assert_eq!(trimming.region().bounds(), (DVec2::ZERO, DVec2::new(7.0, 1.0)));
-    assert_eq!((built.reversed, open.reversed), (false, false));
 }
 
 /// Numbers in `[0, 1)` from a seed.
