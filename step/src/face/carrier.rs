@@ -233,6 +233,11 @@ impl Carrier {
         self.poles.iter().position(|pole| pole.point.distance(p) <= self.pole_tolerance)
     }
 
+    /// Whether following edges on it was given up, since it cost too much.
+    pub(super) fn is_exhausted(&self) -> bool {
+        matches!(&self.form, Form::Numeric(numeric) if numeric.is_exhausted())
+    }
+
     /// The NURBS of a surface that is only known as one.
     pub(super) fn nurbs(&self) -> Option<&NurbsSurface> {
         match &self.form {

@@ -221,6 +221,15 @@ pub(crate) fn build(
     }
     let reversed = left < 0.0;
     let tolerance = tolerance.max(1.5 * off + fit_tolerance).max(widest);
+    Ok(BuiltFace { surface: window.surface, shape: window.shape, reversed, tolerance, loops })
+}
+
+/// Refuses control points and weights that leave no digits.
+fn computable(points: &[DVec3], weights: Option<&[f64]>) -> Result<(), FaceError> {
+    let largest = points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
+    if largest > LARGEST {
+        return Err(FaceError::TooFar(largest));
+    }
     let (low, high) =
         weights.into_iter().flatten().fold((f64::INFINITY, 0.0_f64), |(low, high), w| (low.min(*w), high.max(*w)));
     if high / low > LARGEST { Err(FaceError::Weights(high / low)) } else { Ok(()) }

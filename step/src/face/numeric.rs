@@ -225,6 +225,11 @@ impl Numeric {
         DVec2::new(one(0, at.x), one(1, at.y))
     }
 
+    /// Whether its projections were given up, since they cost too much.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.left.get() == 0
+    }
+
     fn spend(&self, work: u64) {
         self.left.set(self.left.get().saturating_sub(work));
     }
