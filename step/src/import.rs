@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use perpend::kernel::{TrimLoopData, TrimmingData};
 use perpend::{
-    Basis, Carrier, Classification, Definition, EntityId, IntoDefinition, Item, Model, NurbsCurve, Origin, Record,
-    Shape, Shell, TrimmedSurface,
+    Basis, Carrier, Classification, Definition, EntityId, IntoDefinition, InvalidDefinition, Item, Model, NurbsCurve,
+    Origin, Record, Shape, Shell, TrimmedSurface,
 };
 use rayon::prelude::*;
 
@@ -103,7 +103,13 @@ fn built(part: SourcePart, stop: &AtomicBool) -> Import {
             && let Ok(curve) = &curves[*use_of]
         {
             let entity = edges[*use_of].entity;
-            edge_ids[*use_of] = insert_edge(&mut model, curve, entity);
+            match insert_edge(&mut model, curve, entity) {
+                Ok(id) => edge_ids[*use_of] = Some(id),
+                Err(error) => {
+                    let (keyword, reason) = ("EDGE_CURVE".to_owned(), error.to_string());
+                    not_understood.push(NotUnderstood { entity, keyword, reason });
+                }
+            }
         }
     }
     let mut face_ids: Vec<Option<EntityId>> = Vec::with_capacity(faces.len());
@@ -154,7 +160,7 @@ struct Prepared {
 }
 
 impl Prepared {
-    fn new(built: BuiltFace) -> Result<Self, perpend::InvalidDefinition> {
+    fn new(built: BuiltFace) -> Result<Self, InvalidDefinition> {
         let edges = built.loops.iter().flat_map(|one| &one.curves).map(|(_, edge)| *edge).collect();
         let kind = match &built.shape {
             Some(shape) => proven(shape, &built)?,
@@ -165,7 +171,7 @@ impl Prepared {
 }
 
 /// The class of an analytic face, proved against its carrier.
-fn proven(shape: &Shape, built: &BuiltFace) -> Result<Option<Item<perpend::Kind>>, perpend::InvalidDefinition> {
+fn proven(shape: &Shape, built: &BuiltFace) -> Result<Option<Item<perpend::Kind>>, InvalidDefinition> {
     let Some(kind) = (*shape).enter()?.kind else { return Ok(None) };
     let definition = Definition::from(built.surface.clone());
     let tolerance = RECOGNITION * definition.size();
@@ -178,12 +184,12 @@ fn origin(entity: u64) -> Origin {
     Origin::Imported { format: "STEP".to_owned(), from: format!("#{entity}") }
 }
 
-fn insert_edge(model: &mut Model, curve: &NurbsCurve, entity: u64) -> Option<EntityId> {
-    let id = model.insert(&format!("edge #{entity}"), curve.clone()).ok()?;
+fn insert_edge(model: &mut Model, curve: &NurbsCurve, entity: u64) -> Result<EntityId, InvalidDefinition> {
+    let id = model.insert(&format!("edge #{entity}"), curve.clone())?;
     let classification = Classification { origin: Some(origin(entity)), ..Classification::default() };
     let record = Record { classification: Some(classification), ..Record::default() };
-    model.set_record(id, record).ok()?;
-    Some(id)
+    model.set_record(id, record).expect("the edge was just inserted");
+    Ok(id)
 }
 
 fn insert_face(

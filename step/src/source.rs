@@ -185,7 +185,7 @@ pub struct SourceShell {
     pub entity: u64,
     /// Indices in [`SourcePart::faces`].
     pub faces: Vec<usize>,
-    /// Whether the file calls it closed and every face of it was understood.
+    /// Whether the file calls it closed, every face of it was understood, and they use each of their edges once in either direction.
     pub closed: bool,
     /// Whether its faces' outward normals point into the material: their shell is used the other way round.
     pub reversed: bool,

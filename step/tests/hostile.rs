@@ -274,6 +274,20 @@ fn mutations_of_small_files_give_models_or_errors() {
 }
 
 #[test]
+fn one_weight_beyond_all_digits_loses_one_face() {
+    let free = small_files().pop().expect("the file of free surfaces");
+    let whole = import(free.clone(), &ReadOptions::default()).expect("a valid file");
+    let text = String::from_utf8(free).expect("text");
+    let at = text.find("RATIONAL_B_SPLINE_SURFACE((").expect("a rational surface");
+    let number = at + text[at..].find(|c: char| c.is_ascii_digit()).expect("a weight");
+    let end = number + text[number..].find(',').expect("more weights");
+    let harmed = format!("{}1.E70{}", &text[..number], &text[end..]);
+    let import = import(harmed.into_bytes(), &ReadOptions::default()).expect("a file with one bad surface");
+    assert_eq!(import.faces, whole.faces - 1);
+    assert!(import.not_understood.iter().any(|left| left.reason.contains("weights")), "{:?}", import.not_understood);
+}
+
+#[test]
 fn mutations_of_real_files_give_models_or_errors() {
     let folder = std::env::var_os("PERPEND_SHARED")
         .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from)

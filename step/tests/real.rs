@@ -59,7 +59,7 @@ const MODELS: [Part; 6] = [
         edges: 476,
         bodies: 1,
         closed_shells: 1,
-        left_out: &["GEOMETRIC_CURVE_SET"],
+        left_out: &["GEOMETRIC_CURVE_SET", "TRIMMED_CURVE"],
     },
     Part {
         folder: "odri-lower-leg",

@@ -9,8 +9,8 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 use glam::{DVec2, DVec3};
 use perpend::{Aabb, Frame, NurbsSurface};
 
-use super::FaceError;
 use super::numeric::Numeric;
+use super::{FaceError, computable};
 use crate::source::{SourceCurve, SourceSurface};
 
 /// A surface and what is known of its coordinates.
@@ -121,7 +121,7 @@ impl Carrier {
                     let tube = Frame::new(frame.centre + *major * frame.xdir, -frame.ydir(), frame.xdir)?;
                     let profile = SourceCurve::Circle { frame: tube, radius: *minor };
                     let numeric = Numeric::revolution(&profile, frame.centre, frame.axis, points, tolerance)?;
-                    return Ok(Self::numeric(numeric, false, tolerance));
+                    return Self::numeric(numeric, false, tolerance);
                 }
                 let form = Form::Torus { frame: frame(given)?, major: *major, minor: *minor };
                 let scale = DVec2::new(*minor, major + minor);
@@ -129,22 +129,23 @@ impl Carrier {
             }
             SourceSurface::Revolution { profile, point, axis } => {
                 let numeric = Numeric::revolution(profile, *point, *axis, points, tolerance)?;
-                Self::numeric(numeric, false, tolerance)
+                Self::numeric(numeric, false, tolerance)?
             }
             SourceSurface::Extrusion { profile, direction } => {
                 let numeric = Numeric::extrusion(profile, *direction, points, size, tolerance)?;
-                Self::numeric(numeric, true, tolerance)
+                Self::numeric(numeric, true, tolerance)?
             }
-            SourceSurface::Nurbs(surface) => Self::numeric(Numeric::new(surface.clone(), tolerance), true, tolerance),
+            SourceSurface::Nurbs(surface) => Self::numeric(Numeric::new(surface.clone(), tolerance), true, tolerance)?,
         })
     }
 
-    fn numeric(numeric: Numeric, normal_kept: bool, tolerance: f64) -> Self {
+    fn numeric(numeric: Numeric, normal_kept: bool, tolerance: f64) -> Result<Self, FaceError> {
+        computable(numeric.surface.control_points(), numeric.surface.weights())?;
         let domain = numeric.domain();
         let periods = [0, 1].map(|k| numeric.closed[k].then(|| domain[k].1 - domain[k].0));
         let limits = [0, 1].map(|k| if numeric.closed[k] { NO_LIMIT } else { domain[k] });
         let (poles, scale) = (numeric.poles(), numeric.scale());
-        Self {
+        Ok(Self {
             form: Form::Numeric(Box::new(numeric)),
             periods,
             limits,
@@ -153,7 +154,7 @@ impl Carrier {
             scale,
             tolerance,
             pole_tolerance: tolerance,
-        }
+        })
     }
 
     /// The coordinates of the surface's point nearest to `p`; where `near` is given, those of a point about there.
@@ -237,6 +238,11 @@ impl Carrier {
     /// The pole that a point cannot be told from.
     pub(super) fn pole(&self, p: DVec3) -> Option<usize> {
         self.poles.iter().position(|pole| pole.point.distance(p) <= self.pole_tolerance)
+    }
+
+    /// Whether following edges on it was given up, since it cost too much.
+    pub(super) fn is_exhausted(&self) -> bool {
+        matches!(&self.form, Form::Numeric(numeric) if numeric.is_exhausted())
     }
 
     /// The NURBS of a surface that is only known as one.

@@ -7,18 +7,28 @@ use glam::DVec3;
 use perpend::kernel::InvalidEdit;
 use perpend::{Circle, Definition, Ellipse, Frame, InvalidDefinition, Line, NurbsCurve, Prepared, Query, Scratch};
 
-use super::FaceError;
+use super::{FaceError, TOLERANCES_OFF, WIDEST_OFF, computable};
 use crate::source::{SourceCurve, SourceEdge};
 
 /// The edge's curve from its start to its end; exact, but for lines, which join the vertices where those lie within `tolerance`.
 ///
 /// # Errors
 ///
-/// The edge has no length, or its vertices do not lie on its curve in this order.
+/// The edge has no length, its vertices do not lie on its curve in this order, or far off it.
 pub(crate) fn edge_curve(edge: &SourceEdge, tolerance: f64) -> Result<NurbsCurve, FaceError> {
     let refused = |reason: String| FaceError::Edge { entity: edge.entity, reason };
+    if let SourceCurve::Nurbs(curve) = &edge.curve {
+        computable(curve.control_points(), curve.weights()).map_err(|error| refused(error.to_string()))?;
+    }
     let curve = bounded(edge, tolerance).map_err(|error| refused(error.to_string()))?;
-    curve.ok_or_else(|| refused("its curve does not run from its start to its end".to_owned()))
+    let curve = curve.ok_or_else(|| refused("its curve does not run from its start to its end".to_owned()))?;
+    let (first, last) = curve.domain();
+    let off = curve.point(first).distance(edge.start).max(curve.point(last).distance(edge.end));
+    let allowed = (TOLERANCES_OFF * tolerance).max(WIDEST_OFF * curve.control_box().diagonal());
+    if off > allowed {
+        return Err(refused(format!("its curve ends {off:e} off its vertices; at most {allowed:e} is taken for them")));
+    }
+    Ok(curve)
 }
 
 /// None where the vertices are not in order on the curve.

@@ -16,7 +16,7 @@ mod trace;
 mod turn;
 mod window;
 
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use perpend::kernel::{InvalidEdit, TrimCurveData};
 use perpend::{Aabb, InvalidDefinition, NurbsCurve, NurbsSurface, Shape};
 
@@ -37,6 +37,15 @@ const COARSEST: f64 = 1e-4;
 
 /// The largest gap between two edges of a loop that is closed by a straight join, as a share of the face's size.
 const WIDEST_GAP: f64 = 1e-2;
+
+/// Edges may lie off their surface by this share of a face's size, and vertices off their edge's curve by this share of its extent.
+const WIDEST_OFF: f64 = 1e-2;
+
+/// Both may be off by this many times the file's tolerance.
+const TOLERANCES_OFF: f64 = 10.0;
+
+/// Coordinates of control points, and quotients of weights, beyond this leave no digits for a face: nothing real needs them.
+const LARGEST: f64 = 1e12;
 
 /// A face as a model takes it.
 #[derive(Debug, Clone)]
@@ -68,6 +77,22 @@ pub(crate) enum FaceError {
     Edge { entity: u64, reason: String },
     #[error("its {what} is {value}; it must be positive and finite")]
     Length { what: &'static str, value: f64 },
+    #[error(
+        "a control point has the coordinate {0:e}; more than {LARGEST:e} cannot be computed with: have the file written anew"
+    )]
+    TooFar(f64),
+    #[error(
+        "its weights differ by a factor of {0:e}; more than {LARGEST:e} cannot be computed with: have the file written anew"
+    )]
+    Weights(f64),
+    #[error(
+        "edge #{edge} lies {off:e} off its surface; at most {allowed:e} is taken for it: have the file written anew, or state the file's tolerance"
+    )]
+    Off { edge: u64, off: f64, allowed: f64 },
+    #[error(
+        "following its edges on its surface was given up: it took too much work; have the surface written with fewer or better control points"
+    )]
+    TooHard,
     #[error("an edge has no place on its surface")]
     Nowhere,
     #[error("the cone's half-angle is {0}; it must lie strictly between 0 and a right angle")]
@@ -115,7 +140,7 @@ pub(crate) fn build(
     // the face's own edges, numbered from 0
     let own = used.iter().map(|edge| curves[*edge].clone()).collect::<Result<Vec<_>, _>>()?;
     let index = |edge: usize| used.binary_search(&edge).expect("an edge of the face");
-    let samples: Vec<glam::DVec3> = own
+    let samples: Vec<DVec3> = own
         .iter()
         .flat_map(|curve| {
             let (a, b) = curve.domain();
@@ -130,21 +155,30 @@ pub(crate) fn build(
     let apart = tolerance.min(COARSEST * size).max(RESOLUTION * size);
     let mut carrier = Carrier::new(&face.surface, &samples, size, apart)?;
     if !carrier.poles.is_empty() {
-        let off = |p: &glam::DVec3| carrier.point(carrier.inverse(*p, None)).distance(*p);
+        let off = |p: &DVec3| carrier.point(carrier.inverse(*p, None)).distance(*p);
         let off = samples.iter().step_by(4).map(off).fold(0.0, f64::max);
         carrier.pole_tolerance = (2.0 * off).min(COARSEST * size).max(apart);
     }
     let left = if carrier.normal_kept == face.same_sense { 1.0 } else { -1.0 };
+    let allowed = (TOLERANCES_OFF * tolerance).max(WIDEST_OFF * size);
     let mut rings: Vec<Ring> = Vec::new();
     for one in &face.loops {
         let SourceLoop::Edges { uses, .. } = one else { continue };
         let pieces: Vec<_> =
             uses.iter().flat_map(|one| trace::trace(&carrier, &own, index(one.edge), one.forward)).collect();
+        if carrier.is_exhausted() {
+            return Err(FaceError::TooHard);
+        }
         if pieces.is_empty() {
             continue;
         }
         if !pieces.iter().flat_map(|piece| &piece.at).all(|at| at.is_finite()) {
             return Err(FaceError::Nowhere);
+        }
+        if let Some(piece) = pieces.iter().find(|piece| piece.off > allowed)
+            && let Some(edge) = piece.edge
+        {
+            return Err(FaceError::Off { edge: edges[used[edge]].entity, off: piece.off, allowed });
         }
         let ring = chain::ring(&carrier, pieces, left);
         rings.push(if left > 0.0 { ring } else { ring.reversed() });
@@ -174,6 +208,9 @@ pub(crate) fn build(
     let (mut loops, mut widest) = (Vec::new(), 0.0_f64);
     for (ring, outer) in nested(rings) {
         let flats: Vec<Flat> = ring.pieces.iter().map(|piece| fit.curve(piece)).collect();
+        if carrier.is_exhausted() {
+            return Err(FaceError::TooHard);
+        }
         let (flats, gap) = closed(&window, flats, one_vertex);
         if gap > WIDEST_GAP * size {
             let entities = ring.pieces.iter().filter_map(|piece| piece.edge).map(|edge| edges[used[edge]].entity);
@@ -189,6 +226,17 @@ pub(crate) fn build(
     let reversed = left < 0.0;
     let tolerance = tolerance.max(1.5 * off + fit_tolerance).max(widest);
     Ok(BuiltFace { surface: window.surface, shape: window.shape, reversed, tolerance, loops })
+}
+
+/// Refuses control points and weights that leave no digits.
+fn computable(points: &[DVec3], weights: Option<&[f64]>) -> Result<(), FaceError> {
+    let largest = points.iter().map(|point| point.abs().max_element()).fold(0.0, f64::max);
+    if largest > LARGEST {
+        return Err(FaceError::TooFar(largest));
+    }
+    let (low, high) =
+        weights.into_iter().flatten().fold((f64::INFINITY, 0.0_f64), |(low, high), w| (low.min(*w), high.max(*w)));
+    if high / low > LARGEST { Err(FaceError::Weights(high / low)) } else { Ok(()) }
 }
 
 /// The size of a surface that is a whole face.

@@ -1,5 +1,6 @@
 //! Carriers without a closed form: B-splines, revolutions and extrusions.
 
+use std::cell::Cell;
 use std::f64::consts::TAU;
 use std::sync::{Arc, OnceLock};
 
@@ -7,7 +8,7 @@ use glam::{DVec2, DVec3};
 use perpend::kernel::{InvalidEdit, extrusion, revolution};
 use perpend::{
     Circle, Definition, Direction, Ellipse, Frame, InvalidDefinition, KnotVector, Line, NurbsCurve, NurbsSurface,
-    Prepared, Query, Scratch,
+    Prepared, Query, QueryOptions, Scratch,
 };
 
 use super::FaceError;
@@ -23,6 +24,13 @@ const HALVINGS: usize = 12;
 /// A step below this share of the domain ends at its start.
 const CONVERGED: f64 = 1e-13;
 
+/// How often one projection may split its surface.
+const SPLITS: u32 = 2_000;
+
+/// What the projections for one face may cost, in evaluations, splits, and boxes and pieces looked at: the hardest of some thousand faces of
+/// real parts takes 35 000.
+const WORK: u64 = 2_000_000;
+
 /// A NURBS surface with the nearest points on it.
 #[derive(Debug)]
 pub(super) struct Numeric {
@@ -32,6 +40,8 @@ pub(super) struct Numeric {
     /// Whether the face's box may cut it down: revolutions and extrusions, which have no extent of their own.
     pub(super) cropped: bool,
     tolerance: f64,
+    /// What of [`WORK`] is left.
+    left: Cell<u64>,
     prepared: OnceLock<Prepared>,
 }
 
@@ -40,7 +50,7 @@ const DIRECTIONS: [Direction; 2] = [Direction::U, Direction::V];
 impl Numeric {
     pub(super) fn new(surface: NurbsSurface, tolerance: f64) -> Self {
         let closed = [0, 1].map(|k| is_closed(&surface, k, tolerance));
-        Self { surface, closed, cropped: false, tolerance, prepared: OnceLock::new() }
+        Self { surface, closed, cropped: false, tolerance, left: Cell::new(WORK), prepared: OnceLock::new() }
     }
 
     /// The profile (u) turned a whole turn (v).
@@ -215,8 +225,20 @@ impl Numeric {
         DVec2::new(one(0, at.x), one(1, at.y))
     }
 
+    /// Whether its projections were given up, since they cost too much.
+    pub(super) fn is_exhausted(&self) -> bool {
+        self.left.get() == 0
+    }
+
+    fn spend(&self, work: u64) {
+        self.left.set(self.left.get().saturating_sub(work));
+    }
+
     /// The parameters of the nearest point; where Newton's method leads from `near` to a point within the tolerance, those.
     pub(super) fn inverse(&self, p: DVec3, near: Option<DVec2>) -> DVec2 {
+        if self.is_exhausted() {
+            return near.unwrap_or_else(|| self.inside(DVec2::ZERO));
+        }
         let followed = near.map(|near| self.newton(p, self.inside(near)));
         if let Some((at, distance, true)) = followed
             && distance <= self.tolerance
@@ -241,8 +263,13 @@ impl Numeric {
             let definition = Arc::new(Definition::from(self.surface.clone()));
             Prepared::new(definition, None)
         });
-        let query = Query::new(p, Default::default()).ok()?;
-        let foot = prepared.project(&query, &mut Scratch::default())?;
+        let query = Query::new(p, QueryOptions { work: SPLITS, ..QueryOptions::default() }).ok()?;
+        let mut scratch = Scratch::default();
+        let foot = prepared.project(&query, &mut scratch);
+        for work in [scratch.statistics.proposal, scratch.statistics.proof] {
+            self.spend(work.boxes + work.cells + work.pieces + work.subdivisions + work.refinements + work.evaluations);
+        }
+        let foot = foot?;
         Some(DVec2::new(foot.parameter.u(), foot.parameter.v()?))
     }
 
@@ -272,6 +299,7 @@ impl Numeric {
         let extent = DVec2::new(domain[0].1 - domain[0].0, domain[1].1 - domain[1].0);
         let mut best = (start, self.point(start).distance(p));
         for _ in 0..STEPS {
+            self.spend(1);
             let [s, sv, su, _] = self.partials(best.0);
             let r = p - s;
             let (a, b, c) = (su.length_squared(), su.dot(sv), sv.length_squared());
@@ -301,6 +329,7 @@ impl Numeric {
                 if next.1 <= best.1 + rounding {
                     break;
                 }
+                self.spend(1);
                 step *= 0.5;
                 next.0 = self.inside(best.0 + step);
                 next.1 = self.point(next.0).distance(p);

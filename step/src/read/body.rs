@@ -1,6 +1,6 @@
 //! Bodies in their own coordinates: shells, faces, loops, edges.
 
-use std::collections::HashMap;
+use std::collections::{BTreeMap, HashMap, HashSet};
 
 use glam::{DAffine3, DVec3};
 use perpend::InvalidDefinition;
@@ -12,7 +12,8 @@ use super::placement::Geometry;
 use super::style::Colours;
 use super::surface::FaceSurface;
 use crate::source::{
-    NotUnderstood, SourceBody, SourceCurve, SourceEdge, SourceFace, SourceLoop, SourcePart, SourceShell, SourceUse,
+    NotUnderstood, SourceBody, SourceCurve, SourceEdge, SourceFace, SourceLoop, SourcePart, SourceShell, SourceSurface,
+    SourceUse,
 };
 
 /// Solids.
@@ -33,6 +34,8 @@ pub(super) struct LocalBody {
     shells: Vec<SourceShell>,
     /// Faces that were read or listed, by their numbers.
     pub(super) met: Vec<u64>,
+    /// What a copy of it takes: faces, loops, uses of edges, edges, control points, and their share of texts.
+    pub(super) pieces: usize,
     pub(super) not_understood: Vec<NotUnderstood>,
 }
 
@@ -103,6 +106,12 @@ impl<'a> BodyReader<'a> {
         Ok(())
     }
 
+    /// Pays for a part of the body that is kept.
+    fn keep(&mut self, id: u64, pieces: usize) -> Understood<()> {
+        self.body.pieces += pieces;
+        self.geometry.entities.keep(id, pieces)
+    }
+
     fn shell_or_say(&mut self, id: u64) {
         if let Err(left_out) = self.shell(id, false, 0) {
             self.body.not_understood.push(left_out);
@@ -122,9 +131,30 @@ impl<'a> BodyReader<'a> {
         let colour = self.colours.get(id);
         let numbers = values.references(1)?;
         let faces: Vec<usize> = numbers.iter().filter_map(|face| self.face(*face, colour)).collect();
-        let closed = values.keyword == "CLOSED_SHELL" && faces.len() == numbers.len();
+        let mut closed = values.keyword == "CLOSED_SHELL" && faces.len() == numbers.len();
+        if closed && let Some(edge) = self.open_edge(&faces) {
+            closed = false;
+            let reason = format!(
+                "it is called closed, but its faces do not use edge #{edge} once in either direction: it is imported as open"
+            );
+            self.body.not_understood.push(values.refuse(reason));
+        }
         self.body.shells.push(SourceShell { entity: id, faces, closed, reversed });
         Ok(())
+    }
+
+    /// An edge that these faces do not use once in either direction, as those of a closed shell do.
+    fn open_edge(&self, faces: &[usize]) -> Option<u64> {
+        let mut uses: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
+        for around in faces.iter().flat_map(|face| &self.body.faces[*face].loops) {
+            let SourceLoop::Edges { uses: around, .. } = around else { continue };
+            for used in around {
+                let (forth, back) = uses.entry(used.edge).or_default();
+                *(if used.forward { forth } else { back }) += 1;
+            }
+        }
+        let open = uses.into_iter().find(|(_, both)| *both != (1, 1));
+        open.map(|(edge, _)| self.body.edges[edge].entity)
     }
 
     /// The index of a face; none where it was listed.
@@ -159,7 +189,11 @@ impl<'a> BodyReader<'a> {
         let surface_id = values.reference(2)?;
         let surface = self.geometry.surface(surface_id)?;
         let same_sense = (values.flag(3)? != surface.flipped) != turned;
-        let bounds = values.references(1)?;
+        self.keep(id, of_surface(&surface.surface) + of_text(values.text(0)))?;
+        let mut bounds = values.references(1)?;
+        // the boundaries are a set: one that is named again is the same
+        let mut seen = HashSet::new();
+        bounds.retain(|bound| seen.insert(*bound));
         let mut loops = Vec::with_capacity(bounds.len());
         for bound in bounds {
             let read = self
@@ -185,7 +219,7 @@ impl<'a> BodyReader<'a> {
         let outer = values.keyword == "FACE_OUTER_BOUND";
         let backward = values.flag(2)? == turned;
         let around = values.reference(1)?;
-        entities.spend(around, 1)?;
+        self.keep(around, 1)?;
         let values = entities
             .simple_of(around, &["EDGE_LOOP", "VERTEX_LOOP", "POLY_LOOP"])
             .ok_or_else(|| entities.unexpected(around, "a loop"))?;
@@ -234,6 +268,7 @@ impl<'a> BodyReader<'a> {
         let here: Vec<&Pcurve> = known.pcurves.iter().filter(|pcurve| pcurve.surface == surface_id).collect();
         let chosen = here.get(if forward { 0 } else { here.len().saturating_sub(1) });
         let pcurve = chosen.and_then(|pcurve| self.geometry.raw(**pcurve, surface, &self.body.edges[known.index]));
+        self.keep(id, 1 + pcurve.as_ref().map_or(0, |pcurve| pcurve.points.len()))?;
         Ok(SourceUse { edge: known.index, forward, pcurve })
     }
 
@@ -247,6 +282,7 @@ impl<'a> BodyReader<'a> {
         let read = self.geometry.curve(curve).map_err(|reason| about(values.refuse(String::new()), reason))?;
         let pcurves = if read.own_parameter { self.geometry.pcurves(curve) } else { Vec::new() };
         let (from, to) = (self.vertex(start)?, self.vertex(end)?);
+        self.keep(id, of_curve(&read.curve))?;
         self.body.edges.push(SourceEdge {
             entity: id,
             curve: read.curve,
@@ -266,7 +302,8 @@ impl<'a> BodyReader<'a> {
 
     /// The sides of a polygon; neighbours share theirs.
     fn polygon(&mut self, id: u64, corners: &[u64]) -> Understood<Vec<SourceUse>> {
-        self.geometry.entities.spend(id, corners.len())?;
+        // each a use, and an edge unless a neighbour has it
+        self.keep(id, 2 * corners.len())?;
         let mut uses = Vec::with_capacity(corners.len());
         for (i, from) in corners.iter().enumerate() {
             let to = &corners[(i + 1) % corners.len()];
@@ -292,22 +329,6 @@ impl LocalBody {
     /// Whether nothing of it was read.
     pub(super) fn is_empty(&self) -> bool {
         self.faces.is_empty()
-    }
-
-    /// What a copy of it takes: faces, edges and control points.
-    pub(super) fn pieces(&self) -> usize {
-        use crate::source::SourceSurface;
-        let curve = |curve: &SourceCurve| match curve {
-            SourceCurve::Nurbs(curve) => curve.control_points().len(),
-            _ => 1,
-        };
-        let surface = |surface: &SourceSurface| match surface {
-            SourceSurface::Nurbs(surface) => surface.control_points().len(),
-            SourceSurface::Revolution { profile, .. } | SourceSurface::Extrusion { profile, .. } => curve(profile),
-            _ => 1,
-        };
-        let faces: usize = self.faces.iter().map(|face| surface(&face.surface)).sum();
-        faces + self.edges.iter().map(|edge| curve(&edge.curve)).sum::<usize>()
     }
 
     /// Puts a copy of it into a part.
@@ -347,6 +368,28 @@ impl LocalBody {
         part.bodies.push(SourceBody { entity, name, shells: shells.collect(), colour });
         Ok(())
     }
+}
+
+/// Pieces of a curve.
+fn of_curve(curve: &SourceCurve) -> usize {
+    match curve {
+        SourceCurve::Nurbs(curve) => curve.control_points().len(),
+        _ => 1,
+    }
+}
+
+/// Pieces of a surface.
+fn of_surface(surface: &SourceSurface) -> usize {
+    match surface {
+        SourceSurface::Nurbs(surface) => surface.control_points().len(),
+        SourceSurface::Revolution { profile, .. } | SourceSurface::Extrusion { profile, .. } => of_curve(profile),
+        _ => 1,
+    }
+}
+
+/// Pieces of a text: one takes more memory than these characters.
+pub(super) fn of_text(text: &str) -> usize {
+    text.len() / 64
 }
 
 /// A use of an edge in a copy. Where the copy is larger or smaller, the parameters of the file's p-curve are not those of the surface any more.

@@ -22,6 +22,8 @@ pub(super) enum Halt {
     Stopped,
     /// The budget is spent at this entity.
     Spent(u64),
+    /// No more may be kept at this entity.
+    Full(u64),
 }
 
 /// The entities of a file.
@@ -29,13 +31,15 @@ pub(super) struct Entities {
     all: BTreeMap<u64, RawEntity>,
     /// How many entities and control points may still be read, each as often as it is used.
     budget: Cell<u64>,
+    /// How many pieces of bodies may still be kept.
+    room: Cell<u64>,
     halt: Cell<Option<Halt>>,
     stop: Arc<AtomicBool>,
 }
 
 impl Entities {
-    pub(super) fn new(all: BTreeMap<u64, RawEntity>, budget: u64, stop: Arc<AtomicBool>) -> Self {
-        Self { all, budget: Cell::new(budget), halt: Cell::new(None), stop }
+    pub(super) fn new(all: BTreeMap<u64, RawEntity>, budget: u64, room: u64, stop: Arc<AtomicBool>) -> Self {
+        Self { all, budget: Cell::new(budget), room: Cell::new(room), halt: Cell::new(None), stop }
     }
 
     /// All entities in the order of their numbers.
@@ -55,6 +59,18 @@ impl Entities {
         }
         self.budget.set(left.unwrap_or(0));
         if self.halt.get().is_some() { Err(self.refuse(id, "the reading ended here".to_owned())) } else { Ok(()) }
+    }
+
+    /// Pays for what is kept of an entity; an error once there is no room left, and the reading must end.
+    pub(super) fn keep(&self, id: u64, pieces: usize) -> Understood<()> {
+        self.spend(id, pieces)?;
+        let left = self.room.get().checked_sub(pieces as u64);
+        self.room.set(left.unwrap_or(0));
+        if left.is_some() {
+            return Ok(());
+        }
+        self.halt.set(Some(Halt::Full(id)));
+        Err(self.refuse(id, "the reading ended here".to_owned()))
     }
 
     /// Why the reading as a whole must end, if it must.

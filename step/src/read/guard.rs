@@ -16,18 +16,19 @@ use crate::source::SourcePart;
 /// What reading a file may cost.
 #[derive(Debug, Clone, Copy, PartialEq, Eq)]
 pub struct ReadOptions {
-    /// The largest file that is read, in bytes. Memory follows it: about ten times the file, and never more values than a quarter of this number.
+    /// The largest file that is read, in bytes. What is held of its text follows it: about ten times the file, and never more values than a
+    /// quarter of this number. What is made of the text follows `max_pieces`.
     pub max_bytes: u64,
     /// How long reading may take.
     pub max_time: Duration,
-    /// The most faces, edges and control points of all placed copies.
+    /// The most faces, loops, edges, uses of edges and control points that are kept of the file, and of all placed copies.
     pub max_pieces: u64,
 }
 
 impl Default for ReadOptions {
-    /// 512 MiB, 60 seconds, 20 million pieces.
+    /// 512 MiB, 60 seconds, 1.5 million pieces, which take about 1.7 GB as a model.
     fn default() -> Self {
-        Self { max_bytes: 512 << 20, max_time: Duration::from_secs(60), max_pieces: 20_000_000 }
+        Self { max_bytes: 512 << 20, max_time: Duration::from_secs(60), max_pieces: 1_500_000 }
     }
 }
 

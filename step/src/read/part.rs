@@ -9,7 +9,7 @@ use std::time::Duration;
 use glam::DAffine3;
 use perpend::Units;
 
-use super::body::{BodyReader, FACES, LocalBody, SHEETS, SHELLS, SOLIDS};
+use super::body::{BodyReader, FACES, LocalBody, SHEETS, SHELLS, SOLIDS, of_text};
 use super::context::{Scales, Stated};
 use super::entities::{Entities, Halt, MAX_DEPTH, Understood};
 use super::error::ReadError;
@@ -30,7 +30,7 @@ fn budget(bytes: usize) -> u64 {
 pub(super) fn read(bytes: &[u8], max_pieces: u64, stop: Arc<AtomicBool>) -> Result<SourcePart, ReadError> {
     let all = parse(bytes, &stop)?;
     let limit = budget(bytes.len());
-    let entities = Entities::new(all, limit, stop);
+    let entities = Entities::new(all, limit, max_pieces, stop);
     let structure = Structure::of(&entities);
     let colours = Colours::of(&entities);
     let mut walk = Walk::new(&entities, &structure, &colours, max_pieces);
@@ -38,11 +38,24 @@ pub(super) fn read(bytes: &[u8], max_pieces: u64, stop: Arc<AtomicBool>) -> Resu
     match entities.halt() {
         None => {}
         Some(Halt::Spent(entity)) => return Err(ReadError::TooManyCopies { entity, limit }),
+        Some(Halt::Full(entity)) => return Err(ReadError::TooManyCopies { entity, limit: max_pieces }),
         // whoever said so does not listen any more
         Some(Halt::Stopped) => return Err(ReadError::TooSlow { limit: Duration::ZERO }),
     }
     walk.finished()
 }
+
+/// Solids that are not read: where no representation holds one, it is told of all the same.
+const UNREAD_SOLIDS: [&str; 8] = [
+    "CSG_SOLID",
+    "EXTRUDED_AREA_SOLID",
+    "EXTRUDED_FACE_SOLID",
+    "REVOLVED_AREA_SOLID",
+    "REVOLVED_FACE_SOLID",
+    "SOLID_REPLICA",
+    "SWEPT_DISK_SOLID",
+    "TESSELLATED_SOLID",
+];
 
 /// Items of one kind that were left out, told of together.
 struct LeftOut {
@@ -163,6 +176,21 @@ impl<'a> Walk<'a> {
                         self.representation(shape, &mut Vec::new(), &still(&[]), None);
                     }
                 }
+            }
+        }
+        // what else lies in representations that nothing leads to is told of, as what lies in the others is
+        for (id, shape) in &structure.representations {
+            if !self.met.contains(id) && is_shape(entities, *id) {
+                for item in &shape.items {
+                    if !is_body(entities, *item) && mapped_representation(entities, *item).is_none() {
+                        self.other(*item);
+                    }
+                }
+            }
+        }
+        for (id, _) in entities.iter() {
+            if entities.is(id, &UNREAD_SOLIDS) {
+                self.other(id);
             }
         }
         // single bodies, then shells without a body, then faces without a shell
@@ -395,7 +423,8 @@ impl<'a> Walk<'a> {
         if local.is_empty() || place.silent || self.entities.spend(id, 1).is_err() {
             return;
         }
-        self.pieces += local.pieces() as u64;
+        let name = self.name(id, place, definition);
+        self.pieces += (local.pieces + of_text(&name)) as u64;
         if self.pieces > self.max_pieces {
             self.overfull.get_or_insert(id);
             return;
@@ -404,7 +433,6 @@ impl<'a> Walk<'a> {
             self.uncertainty = self.uncertainty.max(stated.uncertainty.unwrap_or(0.0));
         }
         let colour = self.colours.get(id).or(place.colour);
-        let name = self.name(id, place, definition);
         if let Err(error) = local.place(&place.map, (id, name, colour), &mut self.part) {
             self.say(self.entities.refuse(id, format!("where the assembly puts it, {error}")));
         }
@@ -435,6 +463,7 @@ impl<'a> Walk<'a> {
             "AXIS1_PLACEMENT" | "AXIS2_PLACEMENT_3D" | "AXIS2_PLACEMENT_2D" | "CARTESIAN_POINT" | "DIRECTION"
             | "PLACEMENT" | "POINT" | "VECTOR" | "VERTEX_POINT" => {}
             name if name.ends_with("REPRESENTATION_ITEM")
+                || name.ends_with("STYLED_ITEM")
                 || name.starts_with("CAMERA")
                 || name.contains("ANNOTATION") => {}
             "GEOMETRIC_CURVE_SET" => self.leave_out(id, wire),
@@ -483,7 +512,7 @@ impl<'a> Walk<'a> {
         if let Some(entity) = self.overfull {
             return Err(ReadError::TooManyCopies { entity, limit: self.max_pieces });
         }
-        for (keyword, kind) in self.left_out {
+        for (keyword, kind) in std::mem::take(&mut self.left_out) {
             let reason = match kind.count {
                 1 => kind.reason.to_owned(),
                 many => format!("{} ({many} of this kind)", kind.reason),
@@ -495,6 +524,10 @@ impl<'a> Walk<'a> {
             let keyword = "GLOBAL_UNIT_ASSIGNED_CONTEXT".to_owned();
             let entity = self.stated.keys().min().copied().unwrap_or(0);
             self.part.not_understood.push(NotUnderstood { entity, keyword, reason });
+        }
+        if self.part.faces.is_empty() && self.part.not_understood.is_empty() {
+            let first = self.entities.iter().next().map_or(0, |(id, _)| id);
+            self.say(self.entities.refuse(first, "nothing of the file is imported: it holds no faces".to_owned()));
         }
         let mut said = HashSet::new();
         self.part.not_understood.retain(|left_out| said.insert((left_out.entity, left_out.reason.clone())));
@@ -515,6 +548,13 @@ impl<'a> Walk<'a> {
 /// Whether an entity is read as a body: a solid, a sheet, a shell, a face.
 fn is_body(entities: &Entities, id: u64) -> bool {
     [&SOLIDS[..], &SHEETS, &SHELLS, &FACES].into_iter().any(|kinds| entities.is(id, kinds))
+}
+
+/// Whether an entity is a representation of a shape, and not of what is said or drawn of one.
+fn is_shape(entities: &Entities, id: u64) -> bool {
+    let ends = |name: &str| name.ends_with("SHAPE_REPRESENTATION");
+    entities.simple(id).is_some_and(|values| ends(values.keyword))
+        || entities.parts(id).iter().any(|part| ends(&part.name))
 }
 
 /// The representation that a mapped item copies.

@@ -333,9 +333,9 @@ fn doubling_assemblies_end_with_an_error() {
     }
     let error = read(file(&text), &ReadOptions::default()).expect_err("too many copies");
     assert!(matches!(error, ReadError::TooManyCopies { .. }), "{error}");
-    let few = ReadOptions { max_pieces: 30, ..ReadOptions::default() };
-    let error = read(file(&assembly()), &few).expect_err("36 pieces");
-    assert!(matches!(error, ReadError::TooManyCopies { entity: 100, limit: 30 }), "{error}");
+    let few = ReadOptions { max_pieces: 60, ..ReadOptions::default() };
+    let error = read(file(&assembly()), &few).expect_err("two copies of 54 pieces");
+    assert!(matches!(error, ReadError::TooManyCopies { entity: 100, limit: 60 }), "{error}");
 }
 
 #[test]
@@ -508,4 +508,74 @@ fn limits_are_kept() {
     let many: String = (1..200_000).map(|i| format!("#{i}=DIRECTION('',(0.,0.,1.));\n")).collect();
     let error = read(file(&many), &short).expect_err("too slow");
     assert!(matches!(error, ReadError::TooSlow { .. }), "{error}");
+}
+
+/// The cube with these boundaries of its first face.
+fn cube_bounded_by(bounds: &[String], more: &str) -> Vec<u8> {
+    let text = cube_in(&units());
+    assert!(text.contains("(#31)"));
+    file(&(text.replace("(#31)", &format!("({})", bounds.join(","))) + more))
+}
+
+#[test]
+fn boundaries_are_counted_as_often_as_they_are_used() {
+    let again = vec!["#31".to_owned(); 5000];
+    let part = read(cube_bounded_by(&again, ""), &ReadOptions::default()).expect("a valid file");
+    assert_eq!((part.faces.len(), part.faces[0].loops.len()), (6, 1), "boundaries are a set");
+    // many around one loop
+    let (mut bounds, mut more) = (Vec::new(), String::new());
+    for i in 1000..1500 {
+        bounds.push(format!("#{i}"));
+        more += &format!("#{i}=FACE_BOUND('',#30,.T.);\n");
+    }
+    let bytes = cube_bounded_by(&bounds, &more);
+    let options = |max_pieces| ReadOptions { max_pieces, ..ReadOptions::default() };
+    // 500 loops of 4 sides, each a use and perhaps an edge
+    let error = read(bytes.clone(), &options(4400)).expect_err("more uses than pieces");
+    assert!(matches!(error, ReadError::TooManyCopies { entity: 30, limit: 4400 }), "{error}");
+    assert_eq!(read(bytes, &options(4600)).expect("few enough").faces[0].loops.len(), 500);
+}
+
+#[test]
+fn a_long_name_counts_in_every_copy() {
+    let text = assembly().replace("'side 0'", &format!("'{}'", "x".repeat(64_000)));
+    let options = |max_pieces| ReadOptions { max_pieces, ..ReadOptions::default() };
+    let error = read(file(&text), &options(2000)).expect_err("two copies of a thousand pieces");
+    assert!(matches!(error, ReadError::TooManyCopies { entity: 100, limit: 2000 }), "{error}");
+    assert_eq!(read(file(&text), &options(2200)).expect("room for both").bodies.len(), 2);
+}
+
+#[test]
+fn a_shell_that_is_not_closed_is_not_called_so() {
+    let text = cube_in(&units()).replace(",#74,#84)", ",#74)");
+    let part = understood(&text);
+    // the sixth is a body of its own
+    assert_eq!((part.faces.len(), part.bodies.len(), part.bodies[0].shells[0].closed), (6, 2, false));
+    let [left_out] = &part.not_understood[..] else { panic!("{:?}", part.not_understood) };
+    assert_eq!((left_out.entity, left_out.keyword.as_str()), (90, "CLOSED_SHELL"));
+    assert!(left_out.reason.contains("once in either direction"), "{left_out}");
+    // one of its faces turned
+    let part = understood(&cube_in(&units()).replace("FACE_OUTER_BOUND('',#30,.T.)", "FACE_OUTER_BOUND('',#30,.F.)"));
+    assert_eq!((part.faces.len(), part.bodies[0].shells[0].closed, part.not_understood.len()), (6, false, 1));
+}
+
+fn listed(part: &SourcePart) -> Vec<(u64, &str)> {
+    part.not_understood.iter().map(|left_out| (left_out.entity, left_out.keyword.as_str())).collect()
+}
+
+#[test]
+fn geometry_that_no_product_leads_to_is_listed() {
+    let beside = "#300=SPHERE('',5.,#10);\n#301=CSG_SOLID('',#300);\n#302=CSG_SHAPE_REPRESENTATION('',(#301),#4);\n\
+        #303=GEOMETRIC_CURVE_SET('',(#10));\n#304=GEOMETRICALLY_BOUNDED_WIREFRAME_SHAPE_REPRESENTATION('',(#303),#4);\n\
+        #305=TESSELLATED_SHELL('',#306,$);\n#307=TESSELLATED_SHAPE_REPRESENTATION('',(#305),#4);\n\
+        #308=EXTRUDED_AREA_SOLID('',#30,#32,#21,5.);\n";
+    let part = understood(&(cube_in(&units()) + beside));
+    assert_eq!(part.faces.len(), 6);
+    let wanted =
+        [(301, "CSG_SOLID"), (308, "EXTRUDED_AREA_SOLID"), (303, "GEOMETRIC_CURVE_SET"), (305, "TESSELLATED_SHELL")];
+    assert_eq!(listed(&part), wanted);
+    // nothing at all
+    let part = understood(&units());
+    assert_eq!(listed(&part).len(), 1, "{:?}", part.not_understood);
+    assert!(part.not_understood[0].reason.contains("holds no faces"), "{}", part.not_understood[0]);
 }

@@ -58,7 +58,11 @@ impl Sketch {
     }
 
     fn build(&self) -> Result<BuiltFace, FaceError> {
-        let curves: Vec<_> = self.edges.iter().map(|edge| edge_curve(edge, TOLERANCE)).collect();
+        self.build_within(TOLERANCE)
+    }
+
+    fn build_within(&self, tolerance: f64) -> Result<BuiltFace, FaceError> {
+        let curves: Vec<_> = self.edges.iter().map(|edge| edge_curve(edge, tolerance)).collect();
         let face = SourceFace {
             entity: 1,
             name: String::new(),
@@ -67,7 +71,7 @@ impl Sketch {
             loops: self.loops.clone(),
             colour: None,
         };
-        build(&face, &self.edges, &curves, TOLERANCE)
+        build(&face, &self.edges, &curves, tolerance)
     }
 
     /// The face, with one loop for each outline, and its area.
@@ -680,7 +684,8 @@ fn whatever_a_file_says_is_built_or_refused() {
                 .collect();
             sketch = sketch.bound(&uses);
         }
-        match sketch.build() {
+        // a file that states a tolerance as large as its faces
+        match sketch.build_within(1.0) {
             Ok(face) => {
                 built += 1;
                 let points = face.loops.iter().flat_map(|one| &one.curves).flat_map(|(curve, _)| &curve.points);
@@ -702,4 +707,73 @@ fn an_open_loop_and_an_unbounded_face_are_refused() {
     let bottom = sketch.arc(Frame::WORLD, 2.0, (0.0, TAU));
     assert_eq!(sketch.bound(&[(bottom, true)]).build().err(), Some(FaceError::Unbounded));
     assert_eq!(Sketch::on(SourceSurface::Plane(Frame::WORLD)).build().err(), Some(FaceError::Unbounded));
+}
+
+/// A square of this side in a plane across the z axis.
+fn square(surface: SourceSurface, side: f64, height: f64) -> Sketch {
+    let mut sketch = Sketch::on(surface);
+    let at = |k: usize| DVec3::new([0.0, side, side, 0.0][k % 4], [0.0, 0.0, side, side][k % 4], height);
+    let uses: Vec<(usize, bool)> = (0..4).map(|k| (sketch.line(at(k), at(k + 1)), true)).collect();
+    sketch.bound(&uses)
+}
+
+#[test]
+fn edges_far_off_their_surface_are_refused() {
+    let plane = || SourceSurface::Plane(Frame::WORLD);
+    let Err(FaceError::Off { edge: 100, off, .. }) = square(plane(), 10.0, 3.0).build() else {
+        panic!("edges 3 off a plane")
+    };
+    assert_near(off, 3.0);
+    let near = square(plane(), 10.0, 0.1).build().expect("edges a hundredth of the face off are told of");
+    assert!(near.tolerance >= 0.1, "{}", near.tolerance);
+    // one corner alone
+    let mut sketch = Sketch::on(plane());
+    let corners = [DVec3::ZERO, DVec3::X, DVec3::new(1.0, 1.0, 0.3), DVec3::Y];
+    let uses: Vec<(usize, bool)> = (0..4).map(|k| (sketch.line(corners[k], corners[(k + 1) % 4]), true)).collect();
+    let Err(FaceError::Off { edge: 101, .. }) = sketch.bound(&uses).build() else { panic!("a spike") };
+    // a vertex off its edge's line
+    let mut sketch = Sketch::on(plane());
+    let line = SourceCurve::Line { point: DVec3::ZERO, direction: DVec3::X };
+    sketch.edge(line, DVec3::ZERO, DVec3::new(1.0, 0.0, 0.3));
+    let error = edge_curve(&sketch.edges[0], TOLERANCE).expect_err("a vertex in the air").to_string();
+    assert!(error.contains("#100") && error.contains("off its vertices"), "{error}");
+}
+
+/// A bicubic with these control points and weights in its middle, about over the unit square.
+fn patch(height: f64, weight: f64) -> SourceSurface {
+    let knots = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+    let is_middle = |i: usize, j: usize| (i, j) == (1, 2);
+    let point =
+        |i: usize, j: usize| DVec3::new(i as f64 / 3.0, j as f64 / 3.0, if is_middle(i, j) { height } else { 0.0 });
+    let net = (0..4).map(|i| (0..4).map(|j| point(i, j)).collect()).collect();
+    let weights = (0..4).map(|i| (0..4).map(|j| if is_middle(i, j) { weight } else { 1.0 }).collect()).collect();
+    SourceSurface::Nurbs(NurbsSurface::new((3, 3), (knots.clone(), knots), net, Some(weights)).expect("valid"))
+}
+
+#[test]
+fn numbers_beyond_all_digits_are_refused() {
+    square(patch(0.2, 2.0), 1.0, 0.0).build().expect("a face between the borders of its surface");
+    assert_eq!(square(patch(0.2, 1e70), 1.0, 0.0).build().err(), Some(FaceError::Weights(1e70)));
+    assert_eq!(square(patch(0.2, 1e-70), 1.0, 0.0).build().err(), Some(FaceError::Weights(1e70)));
+    assert_eq!(square(patch(1e70, 2.0), 1.0, 0.0).build().err(), Some(FaceError::TooFar(1e70)));
+    // of an edge, it is the edge that is named
+    let mut sketch = Sketch::on(SourceSurface::Plane(Frame::WORLD));
+    let points = vec![DVec3::ZERO, DVec3::new(1.0, 1.0, 0.0), 2.0 * DVec3::X];
+    let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+    let arc = sketch.nurbs(NurbsCurve::new(2, knots, points, Some(vec![1.0, 1e70, 1.0])).expect("valid"));
+    let back = sketch.line(2.0 * DVec3::X, DVec3::ZERO);
+    assert!(matches!(sketch.bound(&[(arc, true), (back, true)]).build(), Err(FaceError::Edge { entity: 100, .. })));
+}
+
+#[test]
+fn a_face_whose_edges_cost_too_much_is_given_up() {
+    // thousands of spans in the air above a bump: each of their places asks for a projection of its own
+    let mut sketch = Sketch::on(patch(0.9, 2.0));
+    let count = 20_000;
+    let at = |i: i32| DVec3::new(f64::from(i % 7) / 7.0, f64::from(i % 5) / 5.0, 1.0 + f64::from(i % 3));
+    let points: Vec<DVec3> = (0..count).map(at).collect();
+    let inner = (0..count).map(f64::from);
+    let knots = [0.0].into_iter().chain(inner).chain([f64::from(count - 1)]).collect();
+    let edge = sketch.nurbs(NurbsCurve::new(1, knots, points, None).expect("valid"));
+    assert_eq!(sketch.bound(&[(edge, true)]).build().err(), Some(FaceError::TooHard));
 }
