@@ -1,5 +1,6 @@
 //! The command line.
 
+use std::num::NonZeroUsize;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, TypedValueParser};
@@ -295,6 +296,9 @@ pub(crate) struct ExportArguments {
     /// OBJ and STL: how far triangles and polylines may be from the shapes, in the model's unit; without it, 1e-3 times the model's size
     #[arg(long, value_name = "E", value_parser = above_zero, allow_negative_numbers = true)]
     pub(crate) chord: Option<f64>,
+    /// OBJ and STL: write no more triangles than these, of all faces together; without it, 10 million
+    #[arg(long, value_name = "N")]
+    pub(crate) most_triangles: Option<NonZeroUsize>,
     /// STL: write text
     #[arg(long)]
     pub(crate) ascii: bool,

@@ -53,6 +53,8 @@ pub(crate) enum CommandError {
     NothingToWrite { model: PathBuf, what: String, format: &'static str, holds: &'static str },
     #[error("{}: entity {id}: {limit} are too few for the chord error {chord:?}: --chord {reached:?} would do", model.display())]
     ChordTooSmall { model: PathBuf, id: EntityId, limit: String, chord: f64, reached: f64 },
+    #[error("{}: the chord error {chord:?} takes more than {most} triangles: {remedy}", model.display())]
+    TooManyTriangles { model: PathBuf, chord: f64, most: usize, remedy: String },
 }
 
 impl CommandError {

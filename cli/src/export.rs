@@ -2,7 +2,9 @@
 
 use std::collections::HashSet;
 use std::io::{self, Write};
+use std::num::NonZeroUsize;
 use std::process::ExitCode;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 use perpend::{AtomicFile, Body, Definition, Entity, EntityId, Model};
 use perpend_step::WriteOptions;
@@ -63,6 +65,9 @@ fn format(arguments: &ExportArguments) -> Result<Format, CommandError> {
     if arguments.chord.is_some() && matches!(format, Format::Step | Format::Json) {
         return Err(CommandError::IdleOption { option: "--chord", format: name(format) });
     }
+    if arguments.most_triangles.is_some() && matches!(format, Format::Step | Format::Json) {
+        return Err(CommandError::IdleOption { option: "--most-triangles", format: name(format) });
+    }
     if arguments.ascii && format != Format::Stl {
         return Err(CommandError::IdleOption { option: "--ascii", format: name(format) });
     }
@@ -77,6 +82,12 @@ fn name(format: Format) -> &'static str {
         Format::Json => "JSON",
     }
 }
+
+/// Triangles of all faces together, where no other number is asked for: half a gigabyte of STL.
+const MOST_TRIANGLES: usize = 10_000_000;
+
+/// The steps by which a chord error that would do is looked for: triangles of curved faces are two to four times as many for a quarter of it.
+const CHORD_STEP: f64 = 4.0;
 
 struct Job<'a> {
     arguments: &'a ExportArguments,
@@ -99,6 +110,9 @@ impl Job<'_> {
             written = perpend_step::write(&self.model, options, out)?;
             Ok(())
         })?;
+        for face in &written.empty {
+            report::say(format_args!("face {face} is left out: its loops are points within rounding"));
+        }
         for fitted in &written.fitted {
             report::say(format_args!(
                 "face {}: an edge was fitted, and is {} {} off the trim",
@@ -233,14 +247,36 @@ impl Job<'_> {
 
     fn meshes(&self, faces: &[&Entity]) -> Result<Vec<Mesh>, CommandError> {
         let (chord, limits) = (self.chord(), Limits::default());
-        let mesh = |face: &&Entity| {
-            let Definition::NurbsSurface(surface) = &**face.definition() else { unreachable!("groups hold surfaces") };
-            let trimming = face.trimming().map(AsRef::as_ref);
-            let mesh = tessellate(surface, trimming, chord, limits).expect("the chord error is positive");
-            let limit = || format!("{} triangles and {} segments of trims", limits.triangles, limits.segments);
-            self.judged(face, mesh.error, limit).map(|()| mesh)
+        let most = self.arguments.most_triangles.map_or(MOST_TRIANGLES, NonZeroUsize::get);
+        let Some(meshes) = meshes_within(faces, chord, most) else {
+            let model = self.arguments.model.clone();
+            let remedy = match self.chord_that_does(faces, chord, most) {
+                Some(would) => format!("--chord {would:?} would do, or more of them with --most-triangles"),
+                None => "give more of them with --most-triangles, or one --entity".to_owned(),
+            };
+            return Err(CommandError::TooManyTriangles { model, chord, most, remedy });
         };
-        faces.par_iter().map(mesh).collect()
+        let limit = || format!("{} triangles and {} segments of trims", limits.triangles, limits.segments);
+        for (face, mesh) in faces.iter().zip(&meshes) {
+            self.judged(face, mesh.error, limit)?;
+        }
+        Ok(meshes)
+    }
+
+    /// A chord error above `chord` with which the faces have been drawn with no more triangles than `most`; none where the model's size is
+    /// too little.
+    fn chord_that_does(&self, faces: &[&Entity], chord: f64, most: usize) -> Option<f64> {
+        let does = |chord: f64| {
+            meshes_within(faces, chord, most).is_some_and(|meshes| meshes.iter().all(|mesh| mesh.error <= chord))
+        };
+        // from coarse to fine: what does not do is found out last, and once
+        let mut would = None;
+        let mut next = self.model.size();
+        while next > chord && does(next) {
+            would = Some(next);
+            next /= CHORD_STEP;
+        }
+        would
     }
 
     fn polylines(&self, curves: &[&Entity]) -> Result<Vec<Polyline>, CommandError> {
@@ -283,6 +319,22 @@ impl Job<'_> {
     fn done(&self, what: &str) {
         report::say(format_args!("{}: {what}", self.arguments.output.display()));
     }
+}
+
+/// The faces' triangles; none where they are more than `most` together, whatever the order of the work.
+fn meshes_within(faces: &[&Entity], chord: f64, most: usize) -> Option<Vec<Mesh>> {
+    let total = AtomicUsize::new(0);
+    let mesh = |face: &&Entity| {
+        if total.load(Ordering::Relaxed) > most {
+            return None;
+        }
+        let Definition::NurbsSurface(surface) = &**face.definition() else { unreachable!("groups hold surfaces") };
+        let trimming = face.trimming().map(AsRef::as_ref);
+        let mesh = tessellate(surface, trimming, chord, Limits::default()).expect("the chord error is positive");
+        let count = mesh.triangles.len();
+        (total.fetch_add(count, Ordering::Relaxed) + count <= most).then_some(mesh)
+    };
+    faces.par_iter().map(mesh).collect()
 }
 
 /// The name of an entity; where it has none, what it is and its id.

@@ -1,5 +1,7 @@
 //! `export`.
 
+use perpend::{Frame, Model, Sphere};
+
 use crate::workshop::Workshop;
 
 #[test]
@@ -36,6 +38,8 @@ fn options_that_mean_nothing_to_a_format_are_refused() {
     let workshop = Workshop::new();
     let run = workshop.run(&["export", "model.ron", "-o", "out.step", "--chord", "0.1"]);
     run.ends(2, "--chord means nothing to STEP: leave it out");
+    let run = workshop.run(&["export", "model.ron", "-o", "out.json", "--most-triangles", "9"]);
+    run.ends(2, "--most-triangles means nothing to JSON: leave it out");
     workshop
         .run(&["export", "model.ron", "-o", "out.obj", "--ascii"])
         .ends(2, "--ascii means nothing to OBJ: leave it out");
@@ -65,6 +69,31 @@ fn a_chord_error_that_is_too_small_is_an_error_that_names_one_that_would_do() {
     run.ends(1, "model.ron: entity 7: 250000 segments are too few for the chord error 1e-15: --chord ");
     let would = run.err.split("--chord ").nth(1).and_then(|rest| rest.split_whitespace().next()).unwrap().to_owned();
     workshop.run(&["export", "model.ron", "-o", "out.obj", "--entity", "7", "--chord", &would]).ends(0, "segments");
+}
+
+#[test]
+fn too_many_triangles_together_are_an_error_that_names_a_chord_error_that_does() {
+    let workshop = Workshop::new();
+    let ball = Sphere::whole(Frame::WORLD, 2.0).unwrap().to_nurbs().unwrap();
+    let mut model = Model::new();
+    for name in ["one", "two", "three"] {
+        model.insert(name, ball.clone()).unwrap();
+    }
+    model.save(workshop.path("balls.ron")).unwrap();
+    let export = |chord: &str, most: &str| {
+        workshop.run(&["export", "balls.ron", "-o", "out.stl", "--chord", chord, "--most-triangles", most])
+    };
+    let run = export("1e-4", "20000");
+    run.ends(1, "balls.ron: the chord error 0.0001 takes more than 20000 triangles: --chord ");
+    assert_eq!(workshop.files(), ["balls.ron", "model.ron"]);
+    let would = run.err.split("--chord ").nth(1).and_then(|rest| rest.split_whitespace().next()).unwrap().to_owned();
+    export(&would, "20000").ends(0, "3 faces");
+    // each of them alone has fewer
+    let count = (std::fs::metadata(workshop.path("out.stl")).unwrap().len() - 84) / 50;
+    export(&would, &count.to_string()).ends(0, "3 faces");
+    export(&would, &(count - 1).to_string()).ends(1, &format!("more than {} triangles: --chord ", count - 1));
+    export(&would, "5").ends(1, "more than 5 triangles: give more of them with --most-triangles, or one --entity");
+    export("1", "0").ends(2, "--most-triangles");
 }
 
 #[test]
