@@ -79,7 +79,7 @@ fn too_many_triangles_together_are_an_error_that_names_a_chord_error_that_does()
     for name in ["one", "two", "three"] {
         model.insert(name, ball.clone()).unwrap();
     }
-    model.save(workshop.path("balls.ron")).unwrap();
+    model.write(workshop.path("balls.ron")).unwrap();
     let export = |chord: &str, most: &str| {
         workshop.run(&["export", "balls.ron", "-o", "out.stl", "--chord", chord, "--most-triangles", most])
     };
