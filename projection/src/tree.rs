@@ -163,7 +163,7 @@ impl BoxTree {
                 Child::Item(item) => limit_squared = visit(item),
                 Child::Inner(at) => self.expand(at, p, limit_squared, &mut waiting),
             }
-            next = waiting.pop().filter(|first| first.key < limit_squared).map(|first| first.child);
+            next = waiting.pop().filter(|first| first.is_nearer_than(limit_squared)).map(|first| first.child);
         }
     }
 
@@ -173,8 +173,9 @@ impl BoxTree {
         let (distances, middles) = dispatch!(self.level, simd => node.seen_from(simd, p));
         for lane in 0..WIDTH {
             let key = if distances[lane] > 0.0 { distances[lane] } else { -middles[lane].recip() };
-            if key < limit_squared {
-                waiting.push(Waiting { key, child: node.children[lane] });
+            let child = Waiting { key, child: node.children[lane] };
+            if child.is_nearer_than(limit_squared) {
+                waiting.push(child);
             }
         }
     }
@@ -207,6 +208,12 @@ struct Waiting {
     /// The square of the distance to its box; where the point lies in that, a negative number that rises with the distance to its middle.
     key: f64,
     child: Child,
+}
+
+impl Waiting {
+    fn is_nearer_than(self, limit_squared: f64) -> bool {
+        self.key.max(0.0) < limit_squared
+    }
 }
 
 impl Eq for Waiting {}
