@@ -236,7 +236,7 @@ fn faces_and_holes_below_the_coarsest_tolerance_keep_their_edges() {
     ];
     for is_body in [false, true] {
         let mut before = Model::new();
-        let faces = plates.iter().map(|(name, plate)| before.insert_trimmed(*name, plate.clone()).unwrap()).collect();
+        let faces = plates.iter().map(|(name, plate)| before.insert_trimmed(name, plate.clone()).unwrap()).collect();
         if is_body {
             before.insert_body("plates", vec![Shell { faces, closed: false }]).unwrap();
         }
