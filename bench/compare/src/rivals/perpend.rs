@@ -70,6 +70,7 @@ impl Contender for Perpend {
             Some(Method::Exclusion) => "exclusion",
             Some(Method::ControlPolygon) => "control polygon",
             Some(Method::Bernstein) => "Bernstein",
+            Some(Method::Trimmed) => "trimmed",
         };
         let known = if self.is_learned { "learned" } else { "nothing known" };
         let usage = match self.usage {
@@ -84,7 +85,7 @@ impl Contender for Perpend {
     fn pace(&self, _: Set) -> Pace {
         match (self.method, self.usage) {
             (_, Use::Cold) => Pace::Few,
-            (None | Some(Method::Analytic | Method::Hierarchy), _) => Pace::All,
+            (None | Some(Method::Analytic | Method::Hierarchy | Method::Trimmed), _) => Pace::All,
             (Some(Method::Wave | Method::Exclusion | Method::ControlPolygon | Method::Bernstein), _) => Pace::Few,
         }
     }
