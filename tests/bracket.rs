@@ -1,7 +1,6 @@
 //! The example part: exact on its edges, closed, and its scan measured as it was made.
 
 #[path = "../examples/bracket/mod.rs"]
-#[allow(dead_code, reason = "the example writes files too")]
 mod bracket;
 
 use std::collections::BTreeMap;
@@ -84,4 +83,17 @@ fn the_scan_deviates_as_it_was_made() {
         }
     }
     assert!(beside_edges * 50 < rows.len(), "{beside_edges} of {}", rows.len());
+}
+
+#[test]
+fn making_it_twice_gives_the_same_files() {
+    let folder = std::path::Path::new(env!("CARGO_TARGET_TMPDIR"));
+    let made = ["bracket-1", "bracket-2"].map(|name| {
+        let folder = folder.join(name);
+        std::fs::create_dir_all(&folder).unwrap();
+        let model = bracket::make(&folder).unwrap();
+        assert_eq!(Model::read(folder.join("bracket.ron")).unwrap(), model);
+        ["bracket.ron", "bracket.csv"].map(|file| std::fs::read(folder.join(file)).unwrap())
+    });
+    assert_eq!(made[0], made[1]);
 }

@@ -3,7 +3,6 @@
 mod builder;
 mod part;
 #[path = "../workshop/random.rs"]
-#[allow(dead_code, reason = "the workshop asks it for more")]
 mod random;
 mod scan;
 

@@ -115,3 +115,20 @@ fn write_row(text: &mut String, entity: &str, point: DVec3) {
     let DVec3 { x, y, z } = (point * 1e6).round() / 1e6 + 0.0; // + 0.0: no negative zero
     writeln!(text, "{entity}{x},{y},{z}").expect("a string takes all that is written to it");
 }
+
+impl Random {
+    /// One of `count` indices.
+    fn index(&mut self, count: usize) -> usize {
+        (self.within(0.0, count as f64) as usize).min(count - 1)
+    }
+
+    /// A point of the unit ball, evenly.
+    fn in_ball(&mut self) -> DVec3 {
+        loop {
+            let p = DVec3::new(self.within(-1.0, 1.0), self.within(-1.0, 1.0), self.within(-1.0, 1.0));
+            if p.length_squared() <= 1.0 {
+                return p;
+            }
+        }
+    }
+}

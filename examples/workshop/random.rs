@@ -1,7 +1,5 @@
 //! Numbers that look random and are the same in every run.
 
-use perpend::DVec3;
-
 /// Vigna's SplitMix64 (Steele, Lea and Flood 2014).
 pub(crate) struct Random(u64);
 
@@ -21,20 +19,5 @@ impl Random {
     /// Even over a range.
     pub(crate) fn within(&mut self, from: f64, to: f64) -> f64 {
         from + (to - from) * (self.next() >> 11) as f64 / (1_u64 << 53) as f64
-    }
-
-    /// One of `count` indices.
-    pub(crate) fn index(&mut self, count: usize) -> usize {
-        (self.within(0.0, count as f64) as usize).min(count - 1)
-    }
-
-    /// A point of the unit ball, evenly.
-    pub(crate) fn in_ball(&mut self) -> DVec3 {
-        loop {
-            let p = DVec3::new(self.within(-1.0, 1.0), self.within(-1.0, 1.0), self.within(-1.0, 1.0));
-            if p.length_squared() <= 1.0 {
-                return p;
-            }
-        }
     }
 }

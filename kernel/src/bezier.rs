@@ -1,5 +1,7 @@
 //! Bézier pieces in homogeneous form.
 
+use std::ops::{Add, Mul};
+
 use glam::DVec4;
 
 use crate::knots::{KnotVector, Span};
@@ -132,6 +134,26 @@ pub struct BezierSurface {
     pub points: Vec<DVec4>,
     /// The spans of the surface that it covers, in u and v.
     pub spans: (Span, Span),
+}
+
+/// Halves a Bézier net by de Casteljau's algorithm: `low` becomes its first half, and `high`, which is as long, its second.
+///
+/// # Accuracy
+///
+/// Exact but for one rounding a level.
+///
+/// # Panics
+///
+/// Where `high` is shorter than `low`, or both are empty.
+pub fn halve<T: Copy + Add<Output = T> + Mul<f64, Output = T>>(low: &mut [T], high: &mut [T]) {
+    let degree = low.len() - 1;
+    high[degree] = low[degree];
+    for k in 1..=degree {
+        for i in (k..=degree).rev() {
+            low[i] = (low[i - 1] + low[i]) * 0.5;
+        }
+        high[degree - k] = low[degree];
+    }
 }
 
 /// The Bézier pieces of a curve with these knots and homogeneous control points, in ascending order.

@@ -208,3 +208,14 @@ fn what_bounds_nothing_is_refused() {
     bad.curves[2].points[1].x = f64::NAN;
     assert!(matches!(trimming(vec![bad]), Err(InvalidTrim::Curve { of: 0, curve: 2, .. })));
 }
+
+/// A carrier may be larger than its face by far: what is thin beside the domain need not be thin beside itself.
+#[test]
+fn a_sliver_of_a_vast_carrier_bounds_a_region() {
+    // powers of two: the middles of the sides lie on them to the bit, and are no lucky hits
+    let (long, thin) = (2.0_f64.powi(-27), 2.0_f64.powi(-33));
+    let corners = [DVec2::splat(0.5), DVec2::splat(0.5 + long), DVec2::new(0.5 + long, 0.5 + long + thin)];
+    let sliver = trimming(vec![polygon(true, &corners)]).expect("a region");
+    let inside = (corners[0] + corners[1] + corners[2]) / 3.0;
+    assert_eq!(sliver.region().side(inside), Side::Inside);
+}

@@ -10,8 +10,8 @@ use std::time::Instant;
 
 use perpend::kernel::{TrimLoopData, TrimmingData};
 use perpend::{
-    Basis, Carrier, Classification, Definition, EntityId, IntoDefinition, InvalidDefinition, Item, Model, NurbsCurve,
-    Origin, Record, Shape, Shell, TrimmedSurface,
+    Basis, Carrier, Classification, Definition, EntityId, IntoDefinition, InvalidDefinition, Item, Kind, Model,
+    NurbsCurve, Origin, Record, Shape, Shell, TrimmedSurface,
 };
 use rayon::prelude::*;
 
@@ -88,11 +88,11 @@ fn built(part: SourcePart, stop: &AtomicBool) -> Import {
     let SourcePart { units, tolerance, edges, faces, bodies, mut not_understood } = part;
     let curves: Vec<Result<NurbsCurve, FaceError>> =
         edges.par_iter().map(|edge| guarded(stop, || edge_curve(edge, tolerance))).collect();
-    let made: Vec<Result<Prepared, String>> = faces
+    let made: Vec<Result<MadeFace, String>> = faces
         .par_iter()
         .map(|face| {
             let built = guarded(stop, || build(face, &edges, &curves, tolerance)).map_err(|error| error.to_string())?;
-            Prepared::new(built).map_err(|error| error.to_string())
+            MadeFace::new(built).map_err(|error| error.to_string())
         })
         .collect();
     let mut model = Model::new();
@@ -152,14 +152,14 @@ fn guarded<T>(stop: &AtomicBool, build: impl FnOnce() -> Result<T, FaceError>) -
 }
 
 /// A face with its proven class.
-struct Prepared {
+struct MadeFace {
     built: BuiltFace,
-    kind: Option<Item<perpend::Kind>>,
+    kind: Option<Item<Kind>>,
     /// The part's edge of every p-curve, loop by loop.
     edges: Vec<Option<usize>>,
 }
 
-impl Prepared {
+impl MadeFace {
     fn new(built: BuiltFace) -> Result<Self, InvalidDefinition> {
         let edges = built.loops.iter().flat_map(|one| &one.curves).map(|(_, edge)| *edge).collect();
         let kind = match &built.shape {
@@ -171,7 +171,7 @@ impl Prepared {
 }
 
 /// The class of an analytic face, proved against its carrier.
-fn proven(shape: &Shape, built: &BuiltFace) -> Result<Option<Item<perpend::Kind>>, InvalidDefinition> {
+fn proven(shape: &Shape, built: &BuiltFace) -> Result<Option<Item<Kind>>, InvalidDefinition> {
     let Some(kind) = (*shape).enter()?.kind else { return Ok(None) };
     let definition = Definition::from(built.surface.clone());
     let tolerance = RECOGNITION * definition.size();
@@ -195,11 +195,11 @@ fn insert_edge(model: &mut Model, curve: &NurbsCurve, entity: u64) -> Result<Ent
 fn insert_face(
     model: &mut Model,
     face: &SourceFace,
-    made: Prepared,
+    made: MadeFace,
     edges: &[Option<EntityId>],
     reversed: bool,
 ) -> Result<EntityId, String> {
-    let Prepared { built, kind, .. } = made;
+    let MadeFace { built, kind, .. } = made;
     let loops = built
         .loops
         .into_iter()

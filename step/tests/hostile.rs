@@ -5,7 +5,8 @@
 
 #![allow(clippy::print_stderr, reason = "a test that skips says so aloud; the figures are wanted by readers")]
 
-use std::path::{Path, PathBuf};
+mod common;
+
 use std::time::Duration;
 
 use glam::DVec2;
@@ -289,13 +290,7 @@ fn one_weight_beyond_all_digits_loses_one_face() {
 
 #[test]
 fn mutations_of_real_files_give_models_or_errors() {
-    let folder = std::env::var_os("PERPEND_SHARED")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from)
-        .join("real");
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is absent; PERPEND_SHARED names the folder that holds real/", folder.display());
-        return;
-    }
+    let Some(folder) = common::real() else { return };
     let names = [
         "aero-assembly/original.step",
         "as1-assembly/original.stp",

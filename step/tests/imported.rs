@@ -5,7 +5,9 @@
 
 #![allow(clippy::print_stderr, reason = "a test that skips says so aloud; the figures are wanted by readers")]
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::Path;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -24,17 +26,6 @@ const MODELS: [(&str, &str, usize, usize); 6] = [
     ("odri-lower-leg", "original.step", 329, 278),
     ("tigl-nacelle", "original.stp", 6, 0),
 ];
-
-fn shared() -> Option<PathBuf> {
-    let folder = std::env::var_os("PERPEND_SHARED")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from)
-        .join("real");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: {} is absent; PERPEND_SHARED names the folder that holds real/", folder.display());
-    None
-}
 
 /// A face as the corpus has it.
 struct CorpusFace {
@@ -110,7 +101,7 @@ fn deviation(points: &[DVec3], face: &CorpusFace, scratch: &mut Scratch) -> f64 
 
 #[test]
 fn faces_lie_where_another_kernel_puts_them_and_no_distance_is_above_its_claim() {
-    let Some(shared) = shared() else { return };
+    let Some(shared) = common::real() else { return };
     for (name, file, count, known) in MODELS {
         let folder = shared.join(name);
         let start = Instant::now();

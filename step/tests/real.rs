@@ -5,7 +5,9 @@
 
 #![allow(clippy::print_stderr, reason = "a test that skips says so aloud; the times are wanted by readers")]
 
-use std::path::{Path, PathBuf};
+mod common;
+
+use std::path::Path;
 use std::time::Instant;
 
 use perpend::{DVec3, Direction, Frame, Model, NurbsSurface};
@@ -81,20 +83,9 @@ const MODELS: [Part; 6] = [
     },
 ];
 
-fn shared() -> Option<PathBuf> {
-    let folder = std::env::var_os("PERPEND_SHARED")
-        .map_or_else(|| Path::new(env!("CARGO_MANIFEST_DIR")).join("../../shared"), PathBuf::from)
-        .join("real");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("skipped: {} is absent; PERPEND_SHARED names the folder that holds real/", folder.display());
-    None
-}
-
 #[test]
 fn no_face_is_lost() {
-    let Some(shared) = shared() else { return };
+    let Some(shared) = common::real() else { return };
     for model in MODELS {
         let folder = shared.join(model.folder);
         let start = Instant::now();

@@ -2,8 +2,9 @@
 
 #![allow(clippy::print_stderr, reason = "a test that skips says so aloud")]
 
+mod common;
+
 use std::f64::consts::TAU;
-use std::path::PathBuf;
 
 use glam::{DVec2, DVec3};
 use perpend::{
@@ -167,13 +168,7 @@ fn one_model_gives_one_text() {
 /// `real.rs` looks for them; without them the test says so and passes.
 #[test]
 fn real_parts_are_written_and_read_again() {
-    let shared = std::env::var_os("PERPEND_SHARED")
-        .map_or_else(|| PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../shared")), PathBuf::from);
-    let folder = shared.join("real");
-    if !folder.is_dir() {
-        eprintln!("skipped: {} is absent; PERPEND_SHARED names the folder that holds real/", folder.display());
-        return;
-    }
+    let Some(folder) = common::real() else { return };
     let parts = [("as1-assembly", "stp"), ("nist-ftc-06", "step"), ("odri-lower-leg", "step"), ("tigl-nacelle", "stp")];
     for (name, ending) in parts {
         let file = std::fs::read(folder.join(name).join(format!("original.{ending}"))).unwrap();

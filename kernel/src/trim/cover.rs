@@ -1,9 +1,9 @@
 //! What a region does in a box of parameters.
 
-use glam::{DVec2, DVec3};
+use glam::DVec2;
 
-use crate::trim::crossing::{Net, halved, orientation};
-use crate::trim::region::{BoundaryPiece, Region, Side, hull};
+use crate::trim::crossing::{Part, orientation};
+use crate::trim::region::{BoundaryPiece, Region, Side};
 
 /// A part of a piece whose hull meets a box and is this share of it meets the box, as far as need be told.
 const FINE: f64 = 0.125;
@@ -46,22 +46,17 @@ fn meets(piece: &BoundaryPiece, min: DVec2, max: DVec2) -> bool {
     if piece.is_straight() {
         return segment_meets(piece.start, piece.end, min, max);
     }
-    let net: Net = piece.points.iter().copied().collect();
-    let mut open: Vec<(Net, DVec2, DVec2, u32)> = vec![(net, piece.start, piece.end, 0)];
-    while let Some((points, start, end, depth)) = open.pop() {
-        if apart(hull(&points, start, end), (min, max)) {
+    let mut open = vec![(Part::whole(piece), 0)];
+    while let Some((part, depth)) = open.pop() {
+        let (low, high) = part.hull();
+        if apart((low, high), (min, max)) {
             continue;
         }
-        let (low, high) = hull(&points, start, end);
         let is_fine = (high - low).cmple(FINE * (max - min)).all();
-        if is_fine || depth == DEPTH || is_within(start, min, max) || is_within(end, min, max) {
+        if is_fine || depth == DEPTH || is_within(part.start, min, max) || is_within(part.end, min, max) {
             return true;
         }
-        let (low, high) = halved(&points);
-        let tip: DVec3 = low[low.len() - 1];
-        let middle = tip.truncate() / tip.z;
-        open.push((low, start, middle, depth + 1));
-        open.push((high, middle, end, depth + 1));
+        open.extend(part.halves().map(|half| (half, depth + 1)));
     }
     false
 }

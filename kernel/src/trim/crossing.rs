@@ -4,6 +4,7 @@ use glam::{DVec2, DVec3};
 use robust::{Coord, orient2d};
 use smallvec::SmallVec;
 
+use crate::bezier::halve;
 use crate::trim::region::{BoundaryPiece, hull};
 
 /// What a piece does to the ray from a point.
@@ -18,13 +19,33 @@ pub(super) enum Crossing {
 }
 
 /// Room for a piece of usual degree.
-pub(super) type Net = SmallVec<[DVec3; 8]>;
+type Net = SmallVec<[DVec3; 8]>;
 
 /// The part of a piece that is looked at.
-struct Part {
+pub(super) struct Part {
     points: Net,
-    start: DVec2,
-    end: DVec2,
+    pub(super) start: DVec2,
+    pub(super) end: DVec2,
+}
+
+impl Part {
+    pub(super) fn whole(piece: &BoundaryPiece) -> Self {
+        Self { points: piece.points.iter().copied().collect(), start: piece.start, end: piece.end }
+    }
+
+    /// The box of its control points.
+    pub(super) fn hull(&self) -> (DVec2, DVec2) {
+        hull(&self.points, self.start, self.end)
+    }
+
+    /// Both halves.
+    pub(super) fn halves(self) -> [Self; 2] {
+        let Self { points: mut low, start, end } = self;
+        let mut high = low.clone();
+        halve(&mut low, &mut high);
+        let middle = high[0].truncate() / high[0].z;
+        [Self { points: low, start, end: middle }, Self { points: high, start: middle, end }]
+    }
 }
 
 /// What a piece does to the ray from `at`.
@@ -41,11 +62,10 @@ pub(super) fn crossing(piece: &BoundaryPiece, at: DVec2) -> Crossing {
     }
     let mut odd = false;
     let smallest = 4.0 * f64::EPSILON * piece.min.abs().max(piece.max.abs());
-    let first = Part { points: piece.points.iter().copied().collect(), start: piece.start, end: piece.end };
     let mut open: SmallVec<[Part; 16]> = SmallVec::new();
-    open.push(first);
+    open.push(Part::whole(piece));
     while let Some(part) = open.pop() {
-        let (min, max) = hull(&part.points, part.start, part.end);
+        let (min, max) = part.hull();
         match outside_hull((min, max), part.start, part.end, at) {
             Some(Crossing::Odd) => odd = !odd,
             Some(_) => {}
@@ -53,7 +73,7 @@ pub(super) fn crossing(piece: &BoundaryPiece, at: DVec2) -> Crossing {
                 if (max - min).cmple(smallest).all() {
                     return Crossing::On;
                 }
-                open.extend(halves(part));
+                open.extend(part.halves());
             }
         }
     }
@@ -87,29 +107,4 @@ fn straight(start: DVec2, end: DVec2, at: DVec2) -> Crossing {
 pub(super) fn orientation(start: DVec2, end: DVec2, at: DVec2) -> f64 {
     let coord = |p: DVec2| Coord { x: p.x, y: p.y };
     orient2d(coord(start), coord(end), coord(at))
-}
-
-/// Both halves, by de Casteljau's algorithm.
-fn halves(part: Part) -> [Part; 2] {
-    let Part { points, start, end } = part;
-    let (low, high) = halved(&points);
-    let tip = low[low.len() - 1];
-    let middle = tip.truncate() / tip.z;
-    [Part { points: low, start, end: middle }, Part { points: high, start: middle, end }]
-}
-
-/// Both halves of a homogeneous Bézier net.
-pub(super) fn halved(points: &[DVec3]) -> (Net, Net) {
-    let mut work: Net = points.iter().copied().collect();
-    let n = work.len();
-    let (mut low, mut high) = (Net::with_capacity(n), Net::with_capacity(n));
-    for k in 0..n {
-        low.push(work[0]);
-        high.push(work[n - 1 - k]);
-        for i in 0..n - 1 - k {
-            work[i] = 0.5 * (work[i] + work[i + 1]);
-        }
-    }
-    high.reverse();
-    (low, high)
 }

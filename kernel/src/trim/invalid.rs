@@ -63,7 +63,7 @@ pub enum InvalidTrim {
     },
     /// The loops bound nothing.
     #[error(
-        "the loops bound no region: every point of the domain's grid is outside, and so are the points beside the loops"
+        "the loops bound no region: every point of a grid over their box is outside, and so are the points beside the loops"
     )]
     Empty,
 }

@@ -2,8 +2,6 @@
 
 use glam::{DVec2, DVec3};
 
-use crate::invalid::Direction;
-use crate::surface::NurbsSurface;
 use crate::trim::crossing::{Crossing, crossing};
 use crate::trim::trimming::{TrimCurve, TrimLoop};
 
@@ -136,11 +134,11 @@ impl Region {
         if is_inside { Side::Inside } else { Side::Outside }
     }
 
-    /// Whether no point is inside, as far as a grid of the domain and points beside the boundary tell.
-    pub(super) fn is_empty(&self, surface: &NurbsSurface) -> bool {
-        let [(u0, u1), (v0, v1)] = [Direction::U, Direction::V].map(|direction| surface.domain(direction));
+    /// Whether no point is inside, as far as a grid of its box and points beside the boundary tell.
+    pub(super) fn is_empty(&self) -> bool {
+        let (min, max) = (self.min, self.max);
         let beside = |piece: &BoundaryPiece| {
-            let step = 1e-7 * DVec2::new(u1 - u0, v1 - v0);
+            let step = 1e-7 * (max - min);
             let middle = piece.points.iter().fold(DVec3::ZERO, |sum, point| sum + *point);
             let middle =
                 if piece.is_straight() { 0.5 * (piece.start + piece.end) } else { middle.truncate() / middle.z };
@@ -148,7 +146,6 @@ impl Region {
             [middle, middle + across, middle - across]
         };
         let grid = (1..16).flat_map(|i| (1..16).map(move |j| DVec2::new(f64::from(i), f64::from(j)) / 16.0));
-        let (min, max) = (self.min, self.max);
         let mut seen = grid.map(|share| min + share * (max - min)).chain(self.pieces.iter().flat_map(beside));
         !seen.any(|at| self.side(at) == Side::Inside)
     }

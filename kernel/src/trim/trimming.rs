@@ -133,7 +133,7 @@ impl Trimming {
             entered.push(one);
         }
         let region = Region::new(&entered);
-        if region.is_empty(surface) {
+        if region.is_empty() {
             return Err(InvalidTrim::Empty);
         }
         Ok((Self { reversed, tolerance, loops: entered, region }, entry))

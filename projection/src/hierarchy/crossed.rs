@@ -14,7 +14,7 @@
 use std::sync::{Arc, OnceLock};
 
 use glam::{DVec2, DVec3};
-use perpend_kernel::{Cover, Direction, KnotVector, NurbsSurface, Region, Trimming};
+use perpend_kernel::{Cover, Direction, KnotVector, NurbsSurface, Region, Side, Trimming};
 
 use super::certify::{Memory, Outcome, Part, certify};
 use super::leaf::Leaf;
@@ -209,7 +209,7 @@ impl Hierarchy {
         // polished feet may have left the region: their distance is no bound
         solution.lower_bound = lower;
         let trim = self.trim.as_ref().expect("a trimmed surface");
-        let kept = |at: DVec2| trim.trimming.region().side(at) != perpend_kernel::Side::Outside;
+        let kept = |at: DVec2| trim.trimming.region().side(at) != Side::Outside;
         let (u, v) = self.leaves[best.leaf as usize].parameters(best.s, best.t);
         let moved = !kept(DVec2::new(solution.u, solution.v));
         TrimmedFoot::Inside(solution, moved.then_some(DVec2::new(u, v)))
@@ -263,6 +263,7 @@ fn prove_crossed(trim: &Trim, part: Part<'_>, slopes: &Slopes, state: &mut State
         let half = Part { leaf, index: part.index, within: within[k], region: Some(region) };
         match region.cover(DVec2::new(leaf.u.0, leaf.v.0), DVec2::new(leaf.u.1, leaf.v.1)) {
             Cover::Outside => {}
+            // as small as it may be, half of a leaf's refinements are left to it: the reserve has room for them
             Cover::Inside => close(Part { region: None, ..half }, state, memory, depth.min(REFINED_DEPTH / 2)),
             Cover::Crossed => prove_crossed(trim, half, &leaf.slopes(), state, memory, depth + 1),
         }

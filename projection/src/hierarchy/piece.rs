@@ -16,6 +16,14 @@ pub(super) struct Piece {
     pub v: (f64, f64),
 }
 
+/// The lines of a net in one direction: point `k` of line `l` is the net's `l across + k step`.
+struct Lines {
+    lines: usize,
+    degree: usize,
+    step: usize,
+    across: usize,
+}
+
 impl Piece {
     /// The pieces of a definition whose homogeneous net in some coordinates is `net`, split at every knot.
     pub(super) fn all(definition: &Definition, net: &[DVec4], rational: bool) -> Vec<Self> {
@@ -67,13 +75,8 @@ impl Piece {
 
     /// Both halves in a direction, by de Casteljau: halving is exact, one rounding a level.
     pub(super) fn halves(self, direction: Direction) -> [Self; 2] {
-        let (p, q) = self.degree;
-        let width = q + 1;
+        let Lines { lines, degree, step, across } = self.lines(direction);
         let (mut low, mut high) = (self.clone(), self);
-        let (lines, degree, step, across) = match direction {
-            Direction::U => (width, p, width, 1),
-            Direction::V => (p + 1, q, 1, width),
-        };
         for line in 0..lines {
             let at = |k: usize| line * across + k * step;
             let work = &mut low.net;
@@ -85,16 +88,8 @@ impl Piece {
                 high.net[at(degree - k)] = work[at(degree)];
             }
         }
-        match direction {
-            Direction::U => {
-                low.u.1 = middle(low.u);
-                high.u.0 = low.u.1;
-            }
-            Direction::V => {
-                low.v.1 = middle(low.v);
-                high.v.0 = low.v.1;
-            }
-        }
+        let at = middle(low.range(direction));
+        (low.range_mut(direction).1, high.range_mut(direction).0) = (at, at);
         [low, high]
     }
 
@@ -106,12 +101,7 @@ impl Piece {
         }
         // two quotients: the ratio of weights keeps its relative accuracy
         let (after, before) = ((at - from) / (to - from), (to - at) / (to - from));
-        let (p, q) = self.degree;
-        let width = q + 1;
-        let (lines, degree, step, across) = match direction {
-            Direction::U => (width, p, width, 1),
-            Direction::V => (p + 1, q, 1, width),
-        };
+        let Lines { lines, degree, step, across } = self.lines(direction);
         let (mut low, mut high) = (self.clone(), self);
         for line in 0..lines {
             let index = |k: usize| line * across + k * step;
@@ -126,7 +116,15 @@ impl Piece {
         vec![low, high]
     }
 
-    pub(super) fn range(&self, direction: Direction) -> (f64, f64) {
+    fn lines(&self, direction: Direction) -> Lines {
+        let (p, q) = self.degree;
+        match direction {
+            Direction::U => Lines { lines: q + 1, degree: p, step: q + 1, across: 1 },
+            Direction::V => Lines { lines: p + 1, degree: q, step: 1, across: q + 1 },
+        }
+    }
+
+    fn range(&self, direction: Direction) -> (f64, f64) {
         match direction {
             Direction::U => self.u,
             Direction::V => self.v,

@@ -74,7 +74,7 @@ impl Boundary {
                         let (low, off) = quintic(&net);
                         if off > CLOSE && depth < DEPTH {
                             let middle = from + 0.5 * (to - from);
-                            let [low, high] = compose::halves(&net);
+                            let [low, high] = compose::halves(net);
                             waiting.extend([(high, middle, to, depth + 1), (low, from, middle, depth + 1)]);
                             continue;
                         }
@@ -196,17 +196,7 @@ fn roots(form: &[f64], found: &mut Vec<f64>) {
             }
             continue;
         }
-        let n = form.len();
-        let mut work = form;
-        let (mut low, mut high) = (Vec::with_capacity(n), Vec::with_capacity(n));
-        for k in 0..n {
-            low.push(work[0]);
-            high.push(work[n - 1 - k]);
-            for i in 0..n - 1 - k {
-                work[i] = 0.5 * (work[i] + work[i + 1]);
-            }
-        }
-        high.reverse();
+        let [low, high] = compose::halves(form);
         open.push((low, from, middle));
         open.push((high, middle, to));
     }

@@ -4,7 +4,10 @@
 //! rounding: with `c = (X, Y) / W` every level is `P_i ← (W - X) P_i + X P_{i+1}`, products in the Bernstein basis. A parameter that is constant
 //! along the piece is put in as a number, so that lines along the parameters keep the patch's degree.
 
+use std::ops::{Add, Mul};
+
 use glam::{DVec3, DVec4};
+use perpend_kernel::bezier::halve;
 use perpend_kernel::binomial;
 
 use crate::hierarchy::Patch;
@@ -103,18 +106,9 @@ fn product(a: &[f64], b: &[DVec4]) -> Net {
 }
 
 /// The two halves of a Bézier net.
-pub(super) fn halves(net: &[DVec4]) -> [Net; 2] {
-    let n = net.len();
-    let mut work = net.to_vec();
-    let (mut low, mut high) = (Vec::with_capacity(n), Vec::with_capacity(n));
-    for k in 0..n {
-        low.push(work[0]);
-        high.push(work[n - 1 - k]);
-        for i in 0..n - 1 - k {
-            work[i] = 0.5 * (work[i] + work[i + 1]);
-        }
-    }
-    high.reverse();
+pub(super) fn halves<T: Copy + Add<Output = T> + Mul<f64, Output = T>>(mut low: Vec<T>) -> [Vec<T>; 2] {
+    let mut high = low.clone();
+    halve(&mut low, &mut high);
     [low, high]
 }
 
@@ -225,7 +219,7 @@ mod tests {
                         .map(|k| value(&low, f64::from(k) / 40.0).distance(value(&part, f64::from(k) / 40.0)))
                         .fold(0.0, f64::max);
                     assert!(worst <= bound + 1e-14, "case {case}: {worst:e} above {bound:e}");
-                    [part, _] = halves(&part);
+                    [part, _] = halves(part);
                 }
                 let (_, bound) = quintic(&part);
                 assert!(bound < 1e-5, "case {case}: {bound:e}");
