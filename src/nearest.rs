@@ -1,6 +1,5 @@
 //! Queries to a whole model, and to its bodies.
 
-use std::collections::HashSet;
 use std::sync::OnceLock;
 
 use glam::DVec3;
@@ -168,21 +167,14 @@ impl Model {
 
     fn whole(&self) -> &Group {
         self.overview().whole.get_or_init(|| {
-            let parts = self.parts();
+            let mut parts = self.parts_of_faces();
+            // a body's faces are asked, whatever else they are
+            for face in self.bodies.iter().flat_map(crate::Body::faces) {
+                parts.remove(&face);
+            }
             let items = self.entities.iter().enumerate().filter(|(_, entity)| !parts.contains(&entity.id));
             Group::new(self, items.map(|(at, _)| at).collect())
         })
-    }
-
-    /// The entities that others stand for: carriers and edges of trimmed faces, unless they are faces of a body themselves.
-    fn parts(&self) -> HashSet<EntityId> {
-        let carriers = self.entities.iter().filter_map(crate::Entity::carrier);
-        let edges = self.entities.iter().filter_map(|entity| entity.trimming()).flat_map(|trimming| trimming.edges());
-        let mut parts: HashSet<EntityId> = carriers.chain(edges).collect();
-        for face in self.bodies.iter().flat_map(crate::Body::faces) {
-            parts.remove(&face);
-        }
-        parts
     }
 
     /// A body made ready for queries.

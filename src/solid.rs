@@ -1,4 +1,4 @@
-//! The signed distance to a closed body: on which side of its faces a point lies.
+//! Bodies made ready for queries: their faces, and on which side of them a point lies whose nearest point is known.
 //!
 //! Where the foot lies inside a face, its outward normal tells. On an edge or a vertex the *pseudo-normal* does: the sum of the outward
 //! normals of the faces that meet there, each times the angle of the face (Bærentzen and Aanæs 2005, "Signed distance
@@ -14,14 +14,12 @@ use std::sync::OnceLock;
 
 use glam::{DVec2, DVec3};
 use perpend_kernel::{Definition, Direction, EntityId, Side};
-use perpend_projection::{FootPoint, Parameter, Place, Query, QueryError, QueryOptions, Scratch};
+use perpend_projection::{FootPoint, Parameter, Place, Query, QueryOptions, Scratch};
 
-use crate::batch;
 use crate::corner::{Corner, corners};
 use crate::entity::Entity;
 use crate::group::{Found, Group};
 use crate::model::Model;
-use crate::query::at_index;
 
 /// A body made ready for queries.
 #[derive(Debug, Clone)]
@@ -36,21 +34,6 @@ pub(crate) struct Solid {
     is_outward: OnceLock<bool>,
 }
 
-/// The nearest point of a closed body, and on which side of it a point lies.
-#[derive(Debug, Clone, Copy, PartialEq)]
-pub struct BodyFoot {
-    /// The face on which the nearest point lies.
-    pub face: EntityId,
-    /// The nearest point, as [`Model::nearest_of`] gives it.
-    pub foot: FootPoint,
-    /// The distance: positive outside, negative inside.
-    pub signed_distance: f64,
-    /// On which side the point lies.
-    pub side: BodySide,
-    /// Proven: no point of the body is nearer. The sign is no part of the proof.
-    pub lower_bound: f64,
-}
-
 /// On which side of a closed body a point lies.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Hash)]
 pub enum BodySide {
@@ -60,43 +43,6 @@ pub enum BodySide {
     Outside,
     /// On a face, as far as doubles tell; or in a gap between faces that meet within their tolerances.
     Boundary,
-}
-
-/// Why a signed distance was not given.
-#[derive(Debug, Clone, PartialEq, thiserror::Error)]
-#[non_exhaustive]
-pub enum BodyError {
-    /// The query is refused.
-    #[error(transparent)]
-    Query(#[from] QueryError),
-    /// A shell is open.
-    #[error(
-        "body {body} has no inside: shells[{shell}] is not closed; ask its distance, or close the shell and say so"
-    )]
-    Open {
-        /// The body.
-        body: EntityId,
-        /// The shell.
-        shell: usize,
-    },
-    /// Points far away would be inside.
-    #[error("body {body} is inside out: points far away would be inside; reverse its faces")]
-    InsideOut {
-        /// The body.
-        body: EntityId,
-    },
-    /// The faces contradict each other.
-    #[error(
-        "body {body}: entity {face} and those that meet it near ({:?}, {:?}, {:?}) do not tell inside from outside: see whether all their normals point outward, and whether they meet within their tolerances", at.x, at.y, at.z
-    )]
-    Undecided {
-        /// The body.
-        body: EntityId,
-        /// The nearest face.
-        face: EntityId,
-        /// The nearest point.
-        at: DVec3,
-    },
 }
 
 /// Below this cosine between the way from the foot and the normal, other points are asked.
@@ -120,53 +66,16 @@ impl Solid {
         let corners = vec![OnceLock::new(); faces.len()];
         Self { faces, tolerance, corners, is_outward: OnceLock::new() }
     }
-}
 
-impl Model {
-    /// The distance from `p` to a closed body with its sign, negative inside, and the foot.
-    ///
-    /// The sign is right where the distance exceeds the tolerances to which the faces meet at the foot. A maximum distance among the options is
-    /// passed over.
-    ///
-    /// # Errors
-    ///
-    /// An id that no body has; an open shell; a body that is inside out; faces that do not tell inside from outside; a coordinate that
-    /// is no finite number or beyond 1e75; an option without meaning.
-    pub fn signed_distance(&self, body: EntityId, p: DVec3, options: &QueryOptions) -> Result<BodyFoot, BodyError> {
-        let query = Query::new(p, QueryOptions { max_distance: None, ..*options })?;
-        self.signed(body, &query, &mut Scratch::default())
+    /// Whether a point far away is outside, or cannot be told.
+    pub(crate) fn is_outward(&self, model: &Model) -> bool {
+        let asked = Asked { model, solid: self, options: QueryOptions::default() };
+        *self.is_outward.get_or_init(|| asked.is_outward())
     }
 
-    /// [`signed_distance`](Self::signed_distance) for many points, in their order, on all cores where the feature `rayon` is on.
-    #[must_use]
-    pub fn signed_distance_all(
-        &self,
-        body: EntityId,
-        ps: &[DVec3],
-        options: &QueryOptions,
-    ) -> Vec<Result<BodyFoot, BodyError>> {
-        let options = QueryOptions { max_distance: None, ..*options };
-        batch::answers(ps, Scratch::default, |scratch, index, p| {
-            let query = Query::new(*p, options).map_err(|error| at_index(error, index))?;
-            self.signed(body, &query, scratch)
-        })
-    }
-
-    fn signed(&self, body: EntityId, query: &Query, scratch: &mut Scratch) -> Result<BodyFoot, BodyError> {
-        let solid = self.solid(body)?;
-        let shells = self.body(body).map_or(&[][..], crate::Body::shells);
-        if let Some(shell) = shells.iter().position(|shell| !shell.closed) {
-            return Err(BodyError::Open { body, shell });
-        }
-        let asked = Asked { model: self, solid, options: query.options };
-        if !*solid.is_outward.get_or_init(|| asked.is_outward()) {
-            return Err(BodyError::InsideOut { body });
-        }
-        let (face, foot) = solid.faces.nearest(self, query, scratch).expect("a body has faces, and none is too far");
-        let side = asked.side(query.point, (face, foot), DETOURS, scratch);
-        let side = side.ok_or(BodyError::Undecided { body, face, at: foot.point })?;
-        let signed_distance = if side == BodySide::Inside { -foot.distance } else { foot.distance };
-        Ok(BodyFoot { face, foot, signed_distance, side, lower_bound: foot.lower_bound })
+    /// On which side of the body a point lies whose nearest point is known; none where the faces do not tell.
+    pub(crate) fn side(&self, model: &Model, query: &Query, found: Found, scratch: &mut Scratch) -> Option<BodySide> {
+        Asked { model, solid: self, options: query.options }.side(query.point, found, DETOURS, scratch)
     }
 }
 
@@ -203,11 +112,10 @@ impl<'a> Asked<'a> {
     fn is_outward(self) -> bool {
         let bounds = self.solid.faces.bounds;
         let p = bounds.centre() + DVec3::new(1.9, 1.3, 1.6) * bounds.diagonal();
-        let asked = Self { options: QueryOptions::default(), ..self };
         let scratch = &mut Scratch::default();
-        let Ok(query) = Query::new(p, asked.options) else { return true };
+        let Ok(query) = Query::new(p, self.options) else { return true };
         let found = self.solid.faces.nearest(self.model, &query, scratch);
-        found.and_then(|found| asked.side(p, found, DETOURS, scratch)) != Some(BodySide::Inside)
+        found.and_then(|found| self.side(p, found, DETOURS, scratch)) != Some(BodySide::Inside)
     }
 
     /// On which side of the body a point lies whose nearest point is known; none where the faces do not tell.

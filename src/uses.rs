@@ -1,7 +1,10 @@
 //! What uses an entity as a part of itself: faces their carriers and edges, bodies their faces.
 
+use std::collections::HashSet;
+
 use perpend_kernel::EntityId;
 
+use crate::entity::Entity;
 use crate::model::Model;
 use crate::referent::Referent;
 use crate::trimmed::edges;
@@ -43,6 +46,14 @@ impl Use {
 }
 
 impl Model {
+    /// The entities that trimmed faces name as parts of themselves, as carriers or as edges: the faces stand for them.
+    #[must_use]
+    pub fn parts_of_faces(&self) -> HashSet<EntityId> {
+        let carriers = self.entities.iter().filter_map(Entity::carrier);
+        let edges = self.entities.iter().filter_map(Entity::trimming).flat_map(|trimming| trimming.edges());
+        carriers.chain(edges).collect()
+    }
+
     /// All uses of an entity as a part.
     pub(crate) fn uses(&self, id: EntityId) -> impl Iterator<Item = Use> + '_ {
         let of_faces = self.entities.iter().filter(move |entity| entity.id != id).flat_map(move |entity| {

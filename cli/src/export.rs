@@ -1,6 +1,5 @@
 //! `perpend export`: a model for other programs.
 
-use std::collections::HashSet;
 use std::io::{self, Write};
 use std::num::NonZeroUsize;
 use std::process::ExitCode;
@@ -215,7 +214,7 @@ impl Job<'_> {
     fn contents(&self) -> (Vec<Group<'_>>, Vec<&Entity>) {
         let (model, only) = (&self.model, self.arguments.entity);
         let (mut groups, mut curves) = (Vec::new(), Vec::new());
-        let mut parts: HashSet<EntityId> = HashSet::new();
+        let mut parts = model.parts_of_faces();
         for body in model.bodies() {
             parts.extend(body.faces());
             if only.is_none_or(|id| id == body.id()) {
@@ -223,10 +222,6 @@ impl Job<'_> {
                 let name = if body.name().is_empty() { format!("body {}", body.id()) } else { body.name().to_owned() };
                 groups.push(Group { name, faces });
             }
-        }
-        for entity in model.entities() {
-            parts.extend(entity.carrier());
-            parts.extend(entity.trimming().into_iter().flat_map(|trimming| trimming.edges()));
         }
         for entity in model.entities() {
             if only.map_or_else(|| parts.contains(&entity.id()), |id| id != entity.id()) {

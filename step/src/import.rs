@@ -98,13 +98,13 @@ fn built(part: SourcePart, stop: &AtomicBool) -> Import {
     let mut model = Model::new();
     model.set_units(units);
     let mut edge_ids: Vec<Option<EntityId>> = vec![None; edges.len()];
-    for use_of in made.iter().flatten().flat_map(|face| &face.edges).flatten() {
-        if edge_ids[*use_of].is_none()
-            && let Ok(curve) = &curves[*use_of]
+    for edge in made.iter().flatten().flat_map(MadeFace::edges) {
+        if edge_ids[edge].is_none()
+            && let Ok(curve) = &curves[edge]
         {
-            let entity = edges[*use_of].entity;
+            let entity = edges[edge].entity;
             match insert_edge(&mut model, curve, entity) {
-                Ok(id) => edge_ids[*use_of] = Some(id),
+                Ok(id) => edge_ids[edge] = Some(id),
                 Err(error) => {
                     let (keyword, reason) = ("EDGE_CURVE".to_owned(), error.to_string());
                     not_understood.push(NotUnderstood { entity, keyword, reason });
@@ -155,18 +155,20 @@ fn guarded<T>(stop: &AtomicBool, build: impl FnOnce() -> Result<T, FaceError>) -
 struct MadeFace {
     built: BuiltFace,
     kind: Option<Item<Kind>>,
-    /// The part's edge of every p-curve, loop by loop.
-    edges: Vec<Option<usize>>,
 }
 
 impl MadeFace {
     fn new(built: BuiltFace) -> Result<Self, InvalidDefinition> {
-        let edges = built.loops.iter().flat_map(|one| &one.curves).map(|(_, edge)| *edge).collect();
         let kind = match &built.shape {
             Some(shape) => proven(shape, &built)?,
             None => None,
         };
-        Ok(Self { built, kind, edges })
+        Ok(Self { built, kind })
+    }
+
+    /// The part's edges that its p-curves follow, loop by loop.
+    fn edges(&self) -> impl Iterator<Item = usize> + '_ {
+        self.built.loops.iter().flat_map(|one| &one.curves).filter_map(|(_, edge)| *edge)
     }
 }
 
@@ -199,7 +201,7 @@ fn insert_face(
     edges: &[Option<EntityId>],
     reversed: bool,
 ) -> Result<EntityId, String> {
-    let MadeFace { built, kind, .. } = made;
+    let MadeFace { built, kind } = made;
     let loops = built
         .loops
         .into_iter()

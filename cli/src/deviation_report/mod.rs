@@ -155,17 +155,10 @@ fn target(asked: Asked, source: Source<'_>, columns: &Columns, model: &Model) ->
     }
 }
 
-/// The entities that are parts of faces: carriers and edges.
-fn parts(model: &Model) -> HashSet<EntityId> {
-    let carriers = model.entities().iter().filter_map(Entity::carrier);
-    let edges = model.entities().iter().filter_map(Entity::trimming).flat_map(|trimming| trimming.edges());
-    carriers.chain(edges).collect()
-}
-
 /// The body that is all of the model, if it is closed.
 fn only_body(model: &Model) -> Option<&Body> {
     let [body] = model.bodies() else { return None };
-    let parts = parts(model);
+    let parts = model.parts_of_faces();
     let faces: HashSet<EntityId> = body.faces().collect();
     let is_of_body = |entity: &Entity| faces.contains(&entity.id()) || parts.contains(&entity.id());
     (body.is_closed() && model.entities().iter().all(is_of_body)).then_some(body)
@@ -177,7 +170,7 @@ fn shown<'a>(model: &'a Model, asked: Asked, survey: &Survey) -> Vec<&'a Entity>
         Asked::Entity(id) => HashSet::from([id]),
         Asked::Body(id) => model.body(id).into_iter().flat_map(Body::faces).collect(),
         Asked::All => {
-            let parts = parts(model);
+            let parts = model.parts_of_faces();
             model.entities().iter().map(Entity::id).filter(|id| !parts.contains(id)).collect()
         }
     };

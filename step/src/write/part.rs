@@ -1,7 +1,5 @@
 //! What of a model is written, and how it hangs together.
 
-use std::collections::HashSet;
-
 use perpend::kernel::Trimming;
 use perpend::{Definition, Entity, EntityId, Model, NurbsSurface};
 
@@ -53,7 +51,7 @@ impl<'a> Part<'a> {
     /// All of a model, or one entity or body of it.
     pub(super) fn new(model: &'a Model, only: Option<EntityId>) -> Self {
         let mut part = Self::default();
-        let mut inside: HashSet<EntityId> = HashSet::new();
+        let mut inside = model.parts_of_faces();
         for body in model.bodies() {
             inside.extend(body.faces());
             if only.is_some_and(|id| id != body.id()) {
@@ -63,10 +61,6 @@ impl<'a> Part<'a> {
             let shells =
                 body.shells().iter().map(|shell| ShellSource { faces: faces(&shell.faces), closed: shell.closed });
             part.bodies.push(BodySource { name: body.name(), shells: shells.collect(), colour: body.colour() });
-        }
-        for entity in model.entities() {
-            inside.extend(entity.carrier());
-            inside.extend(entity.trimming().into_iter().flat_map(|trimming| trimming.edges()));
         }
         for entity in model.entities() {
             let counts = only.map_or_else(|| !inside.contains(&entity.id()), |id| id == entity.id());
