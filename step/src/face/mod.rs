@@ -198,7 +198,7 @@ pub(crate) fn build(
     };
     let mut rings = opened.rings;
     if rings.is_empty() {
-        rings.push(Ring { pieces: whole_domain(&carrier) });
+        rings.push(open::frame(carrier.limits));
     }
     let window = Window::new(&carrier, &rings, opened.full)?;
     let fit_tolerance = (0.1 * tolerance).min(1e-7 * size).max(1e-12 * size);
@@ -248,13 +248,6 @@ fn size_alone(surface: &SourceSurface) -> f64 {
         SourceSurface::Revolution { profile: SourceCurve::Nurbs(profile), .. } => profile.control_box().diagonal(),
         _ => 1.0,
     }
-}
-
-/// The edges of a domain that bounds the face by itself.
-fn whole_domain(carrier: &Carrier) -> Vec<trace::Piece> {
-    let [(u0, u1), (v0, v1)] = carrier.limits;
-    let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1), (u0, v0)].map(|(u, v)| DVec2::new(u, v));
-    corners.windows(2).map(|pair| trace::Piece::join(pair[0], pair[1])).collect()
 }
 
 /// Rings with the material on their left, and whether they bound it from outside: those inside an odd number of others do not.

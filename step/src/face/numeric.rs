@@ -78,22 +78,18 @@ impl Numeric {
             let mut range = (f64::INFINITY, f64::NEG_INFINITY);
             for p in points {
                 let (distance, height) = polar(*p);
-                let candidates = if slope.abs() > 1e-3 {
-                    let t = (height - start) / slope;
-                    [t, t]
+                let t = if slope.abs() > 1e-3 {
+                    (height - start) / slope
                 } else {
                     let across = along - slope * unit;
                     let foot = origin - centre - start * unit;
                     let (a, b, c) =
                         (across.length_squared(), foot.dot(across), foot.length_squared() - distance * distance);
                     let root = (b * b - a * c).max(0.0).sqrt();
-                    // the half of the line that is seen from the origin of its parameter
-                    let both = [(-b - root) / a, (-b + root) / a];
-                    if b > 0.0 { [both[1]; 2] } else { [both[1], both[1]] }
+                    // both halves of the line sweep the same points
+                    (-b + root) / a
                 };
-                for t in candidates {
-                    range = (range.0.min(t), range.1.max(t));
-                }
+                range = (range.0.min(t), range.1.max(t));
             }
             range
         };

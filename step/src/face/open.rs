@@ -107,11 +107,14 @@ fn whole(carrier: &Carrier, curves: &[NurbsCurve], rings: Vec<Ring>) -> Result<O
     if crossed {
         return Ok(opened);
     }
-    let [(u0, u1), (v0, v1)] = ranges;
-    let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1), (u0, v0)].map(|(u, v)| DVec2::new(u, v));
-    let frame = corners.windows(2).map(|pair| Piece::join(pair[0], pair[1])).collect();
-    opened.rings.insert(0, Ring { pieces: frame });
+    opened.rings.insert(0, frame(ranges));
     Ok(opened)
+}
+
+/// The border of a box of coordinates, counter-clockwise.
+pub(super) fn frame([(u0, u1), (v0, v1)]: [(f64, f64); 2]) -> Ring {
+    let corners = [(u0, v0), (u1, v0), (u1, v1), (u0, v1), (u0, v0)].map(|(u, v)| DVec2::new(u, v));
+    Ring { pieces: corners.windows(2).map(|pair| Piece::join(pair[0], pair[1])).collect() }
 }
 
 /// Rings moved by whole periods, each next to the one that bounds them, and the range of their coordinate.
